@@ -27,7 +27,7 @@ import stiction as st
 from stiction.bam import read_bam
 from stiction.fitting import FitResult
 from stiction.library.comparison import fix_drive
-from stiction.plant_file import render
+from stiction.plant.plant_file import render
 
 ENTRIES = Path(__file__).parents[1] / "python" / "stiction" / "library" / "entries"
 SEED = 0

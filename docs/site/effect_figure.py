@@ -14,9 +14,9 @@ import numpy as np
 import stiction as st
 from stiction import plot
 from stiction.catalogue import EffectRecord
-from stiction.diagnosis.coordinates import looks
-from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.own import own_view
+from stiction.diagnosis.adequacy.coordinates import looks
+from stiction.diagnosis.data.evidence import Evidence
+from stiction.diagnosis.findings.own import own_view
 from stiction.fitting.rows import Nuisances
 from stiction.plan import plan
 from stiction.plot import ACCENT, FAINT, SIMULATED, SMALL

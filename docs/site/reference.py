@@ -44,7 +44,9 @@ what it cannot use with :class:`stiction.InputError`, in a sentence that says wh
 def documented() -> list[str]:
     """Modules of the reference: the package, its packages, and what a page or example imports."""
     inside = {m.name: m.ispkg for m in pkgutil.iter_modules(stiction.__path__)}
-    packages = {name for name, package in inside.items() if package and name != COMMANDS}
+    packages = {
+        name for name, package in inside.items() if package and name != COMMANDS and name[0] != "_"
+    }
     named = {name for name in _imported() if name in inside and not name.startswith("_")}
     return ["stiction", *(f"stiction.{name}" for name in sorted((packages | named) - {COMMANDS}))]
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ._support.lazy import lazy
 from .errors import InputError
-from .lazy import lazy
 
 if TYPE_CHECKING:
     from ._native import FrictionModel, Motion, __version__

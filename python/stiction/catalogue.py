@@ -8,8 +8,8 @@ from functools import cache
 from typing import Any, Final, TypeVar
 
 from . import _native
+from ._support.wording import commas, did_you_mean
 from .errors import UnknownName
-from .wording import commas, did_you_mean
 
 __all__ = [
     "Catalogue",

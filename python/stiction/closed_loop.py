@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ._support.arrays import FloatArray
+from ._support.wording import NO_POSITION
 from .errors import InputError
-from .motion import count_of, evenly, zero_order_hold
 from .recording.checks import without_failures, without_spikes
-from .residual import FreeRun, free_run, started, starting_velocity
-from .trajectory import FloatArray
-from .weak_form import Start
-from .wording import NO_POSITION
+from .recording.motion import count_of, evenly, zero_order_hold
+from .residual.effort import FreeRun, free_run, started, starting_velocity
+from .residual.weak_form import Start
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,17 +9,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from . import closed_loop, given, steady
-from .begins import Begin, begin_of
+from . import closed_loop
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.frozen import path_of
+from ._support.given import number
 from .closed_loop import ClosedLoop
 from .errors import InputError
-from .frozen import path_of
 from .intervals import draw_values, intervals_of
-from .parameter import number
-from .plant import Plant
+from .plant import Plant, steady
+from .plant.begins import Begin, begin_of
 from .recording import Recording
 from .recording.names import names_of
-from .trajectory import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

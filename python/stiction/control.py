@@ -6,12 +6,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from . import given
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.given import number
 from .errors import InputError
 from .motor import Motor
-from .parameter import number
 from .plant import Plant
-from .trajectory import FloatArray
 
 __all__ = ["start", "system"]
 

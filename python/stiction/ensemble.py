@@ -13,15 +13,15 @@ from typing import Any, Final, Literal
 import numpy as np
 import numpy.typing as npt
 
-from . import given
 from ._native import Ensemble as _Ensemble
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.frozen import Frozen, freeze, path_of
+from ._support.keys import choice
+from ._support.keywords import explain_keywords
+from ._support.wording import commas
 from .errors import InputError, UnknownName
-from .frozen import Frozen, freeze, path_of
-from .keys import choice
-from .keywords import explain_keywords
 from .motor import Motor
-from .trajectory import FloatArray
-from .wording import commas
 
 __all__ = ["Ensemble", "EnsembleRun", "Reduce", "simulate_ensemble"]
 

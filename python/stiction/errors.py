@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .wording import sentence
+from ._support.wording import sentence
 
 __all__ = ["CallError", "InputError", "NotEnoughData", "UnknownName"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Never, TypeVar
 
+from ._support.wording import commas, did_you_mean
 from .errors import InputError, UnknownName
-from .wording import commas, did_you_mean
 
 __all__ = ["Fixed"]
 

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from ._native import FrictionModel
-from .keywords import explain_keywords
+from ._support.keywords import explain_keywords
 
 __all__ = ["FrictionModel"]
 

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from . import given, plot
+from . import plot
+from ._support import given
+from ._support.keys import choice
 from .catalogue import laws as catalogue
 from .errors import InputError
-from .keys import choice
 from .plant import Plant
 
 if TYPE_CHECKING:

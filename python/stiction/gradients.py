@@ -7,14 +7,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from . import given
 from ._native import FrictionModel, Motion
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.frozen import path_of
+from ._support.given import number
 from .errors import InputError
-from .frozen import path_of
 from .motor import Motor
-from .parameter import number
 from .plant import Plant
-from .trajectory import FloatArray
 
 __all__ = ["Simulation", "over_batch"]
 

@@ -7,14 +7,14 @@ from typing import Any, Final, SupportsFloat
 
 import numpy as np
 
-from . import given
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.frozen import path_of
+from ._support.given import number
 from .ensemble import Ensemble
 from .errors import InputError
-from .frozen import path_of
 from .intervals import draw_values, intervals_of
-from .parameter import number
 from .plant import Plant
-from .trajectory import FloatArray
 
 try:
     import gymnasium

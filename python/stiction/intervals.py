@@ -9,9 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from . import given
+from ._support import given
+from ._support.given import number
 from .errors import InputError
-from .parameter import number
 
 __all__ = ["draw_values", "intervals_of"]
 

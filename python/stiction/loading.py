@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from . import given, session
+from . import session
+from ._support import given
+from ._support.file_kinds import kind_of, kind_of_table
+from ._support.keywords import explain_keywords
 from .errors import InputError
-from .file_kinds import kind_of, kind_of_table
-from .keywords import explain_keywords
 from .plant import Plant
-from .plant_file import read_toml
+from .plant.plant_file import read_toml
 
 __all__ = ["load"]
 

@@ -9,11 +9,13 @@ from typing import Any, Final, Self
 import numpy as np
 import numpy.typing as npt
 
-from . import _native, given
+from . import _native
 from ._native import FrictionModel
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.keywords import explain_constructor, explain_keywords
 from .errors import InputError
-from .keywords import explain_constructor, explain_keywords
-from .trajectory import FloatArray, Trajectory
+from .trajectory import Trajectory
 
 __all__ = ["Motor"]
 

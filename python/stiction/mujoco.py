@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from . import given
+from ._support import given
+from ._support.arrays import FloatArray
 from .errors import InputError
 from .motor import Motor
-from .parameter import Parameter
 from .plant import Plant
-from .trajectory import FloatArray
+from .plant.parameter import Parameter
 
 if TYPE_CHECKING:
-    from .stated import Effect
+    from .plant.stated import Effect
 
 __all__ = ["Joint", "attach", "patch", "simulator", "step"]
 

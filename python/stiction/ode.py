@@ -14,11 +14,11 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from . import given
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.wording import commas
 from .errors import InputError
 from .plant import Plant
-from .trajectory import FloatArray
-from .wording import commas
 
 __all__ = ["Equations", "Solution", "equations", "solve"]
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import given
-from .atomic_files import atomic_write
-from .best_effort import Failure, attempt
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.atomic_files import atomic_write
+from ._support.best_effort import Failure, attempt
 from .errors import InputError
-from .trajectory import FloatArray
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -10,24 +10,25 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from . import given
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.file_kinds import kind_of_table
+from ._support.frozen import Frozen, freeze
+from ._support.keys import check_keys
+from ._support.keywords import explain_constructor
+from ._support.progress import phase, steps
+from ._support.readers import FromFile
+from ._support.units import Motion
+from ._support.wording import commas, did_you_mean, plural
 from .errors import InputError
-from .file_kinds import kind_of_table
-from .frozen import Frozen, freeze
-from .keys import check_keys
-from .keywords import explain_constructor
 from .plant import Plant
-from .plant_file import read_toml, section
-from .progress import phase, steps
-from .readers import FromFile
+from .plant.plant_file import read_toml, section
 from .recording import Columns, Recording
 from .recording.names import names_of
 from .recording.recording import recordings_of
 from .recording.session_clock import ages_of, starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, split
-from .recording.units import FloatArray, Motion
 from .session_entries import Entry, beside, entries_of
-from .wording import commas, did_you_mean, plural
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,14 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from ._support.given import brief, number
+from ._support.keys import check_keys, choice
+from ._support.wording import commas, plural
 from .errors import InputError
-from .given import brief
-from .keys import check_keys, choice
-from .parameter import number
-from .plant_file import section
+from .plant.plant_file import section
 from .recording import SETTINGS
 from .recording.recording import SPLIT_ROLES
-from .wording import commas, plural
 
 __all__ = ["Entry", "beside", "entries_of"]
 

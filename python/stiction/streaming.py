@@ -10,13 +10,14 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from . import given
-from .atomic_files import atomic_write
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.atomic_files import atomic_write
+from ._support.given import number
+from ._support.keywords import explain_keywords
 from .errors import InputError
-from .keywords import explain_keywords
 from .motor import Motor
-from .parameter import number
-from .trajectory import FloatArray, Trajectory
+from .trajectory import Trajectory
 
 __all__ = ["stream"]
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache, partial
 from typing import Any
 
-from . import given
+from ._support import given
 from .errors import InputError
 from .gradients import Simulation, over_batch
 from .motor import Motor

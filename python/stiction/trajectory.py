@@ -4,25 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
-from . import given
+from ._support import given
+from ._support.arrays import FloatArray
+from ._support.frozen import Frozen
+from ._support.keys import choice
+from ._support.table_file import save_table
 from .errors import InputError, UnknownName
-from .frozen import Frozen
-from .keys import choice
-from .table_file import save_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .plot import Panels
 
-__all__ = ["FloatArray", "Trajectory"]
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+__all__ = ["Trajectory"]
 
 _MOTION = ("position", "velocity", "friction", "measured")
 _UNITS: Final = {

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import stiction as st
-from stiction.atomic_files import new_folder
+from stiction._support.atomic_files import new_folder
 from stiction.bench import CASES, make
 from stiction.bench import layout as layout_module
 from stiction.bench.deal import deal
@@ -141,7 +141,8 @@ def test_an_interrupted_layout_goes_on_to_the_same_files(
 @pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does")
 def test_what_a_kill_leaves_of_a_folder_is_cleared_away(tmp_path: Path) -> None:
     code = (
-        "import sys, time; from pathlib import Path; from stiction.atomic_files import new_folder\n"
+        "import sys, time; from pathlib import Path\n"
+        "from stiction._support.atomic_files import new_folder\n"
         "with new_folder(Path(sys.argv[1]) / 'one') as draft:\n"
         "    (draft / 'part').write_text('half'); print('at work', flush=True); time.sleep(60)"
     )

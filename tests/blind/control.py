@@ -18,8 +18,8 @@ def uncalibrated(replace: Callable[[str, Any], None]) -> None:
     def unbiased(null: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(len(null)), null
 
-    replace("stiction.diagnosis.screen._threshold", lambda *_: 0.0)
-    replace("stiction.diagnosis.rounds.centre", unbiased)
+    replace("stiction.diagnosis.screening.screen._threshold", lambda *_: 0.0)
+    replace("stiction.diagnosis.selection.rounds.centre", unbiased)
 
 
 def shuffled(rows: list[dict[str, Any]], seed: int = 0) -> list[dict[str, Any]]:

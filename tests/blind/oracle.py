@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.gain import residuals_of
-from stiction.diagnosis.model import fit_model
+from stiction.diagnosis.data.evidence import Evidence
+from stiction.diagnosis.data.gain import residuals_of
+from stiction.diagnosis.screening.model import fit_model
 from stiction.fitting.solve import reweight
 
 from .stated import as_session

@@ -3,7 +3,7 @@
     python -m tests.blind.reliability grid.jsonl ordinary.jsonl axis4.jsonl
 
 The files are results of the counts of sessions (``python -m tests.blind.ordinary``), of as many
-plants as there are. Manners are those of ``stiction.diagnosis.reliability``.
+plants as there are. Manners are those of ``stiction.diagnosis.findings.reliability``.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections import Counter
 from itertools import product
 from pathlib import Path
 
-from stiction.diagnosis.reliability import COUNTS, manner
+from stiction.diagnosis.findings.reliability import COUNTS, manner
 
 HEAD = """# How often names were right in sessions whose truth was known, by how they were told.
 # Written by `python -m tests.blind.reliability`: {sessions} sessions of {files} counts.

@@ -16,9 +16,9 @@ from pathlib import Path
 import pytest
 from tests.cli.desk import Desk, of_two
 
+from stiction._support.progress import Progress, duration, phase, steps, watch
 from stiction.cli import run
 from stiction.cli.progress import progress
-from stiction.progress import Progress, duration, phase, steps, watch
 
 LINE = re.compile(r"(\d+ min )?\d+ s: .+")
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction._support.given import whole
 from stiction.cli import run
-from stiction.given import whole
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,10 @@ import pytest
 
 import stiction as st
 from stiction import Plant
-from stiction.begins import load_begins, save_begins
 from stiction.cli import run
 from stiction.cli.recording_run import stems_of
-from stiction.residual import started
+from stiction.plant.begins import load_begins, save_begins
+from stiction.residual.effort import started
 
 DT = 1e-3
 ROWS = 2000

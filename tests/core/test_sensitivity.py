@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.motion import Kernel
+from stiction.recording.motion import Kernel
 
 from .rigs import CONTACTS, INERTIA, drawn_rig, motor
 

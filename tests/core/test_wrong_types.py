@@ -12,10 +12,10 @@ import pytest
 import stiction as st
 from stiction import demo_session, paper
 from stiction.compare import compare
-from stiction.parameter import Parameter
 from stiction.plan import plan
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect, Friction
 from stiction.recording import check, read_table
-from stiction.stated import Effect, Friction
 
 ROWS = np.arange(300.0)
 DT = 1e-3

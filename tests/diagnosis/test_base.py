@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.base import fit_baseline
+from stiction.diagnosis.screening.base import fit_baseline
 from stiction.fitting.forms import horizon_of
 from stiction.fitting.rows import Nuisances, Rows
 from stiction.fitting.solve import SELECT_IS_FITTED
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT, ROWS = 1e-3, 5000
 

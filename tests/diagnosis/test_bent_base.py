@@ -8,8 +8,8 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis.base import fit_baseline
-from stiction.diagnosis.model import step_beside
+from stiction.diagnosis.screening.base import fit_baseline
+from stiction.diagnosis.screening.model import step_beside
 
 # One seed in which the elements that yield first vanish from the base: small efforts move nothing.
 HIDDEN = ("drive_deadband", 0.0129)

@@ -10,7 +10,7 @@ import pytest
 
 import stiction as st
 from stiction.cli import run
-from stiction.diagnosis.bets import Bet, Bets
+from stiction.diagnosis.findings.bets import Bet, Bets
 
 DT = 2e-3
 PLANT = """\

@@ -11,7 +11,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.bursts import burst_of
+from stiction.diagnosis.adequacy.bursts import burst_of
 
 RECORDINGS, ROWS, DT = 4, 4000, 5e-3
 NAMES = [f"recording {k + 1}" for k in range(RECORDINGS)]

@@ -8,13 +8,13 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis import verdict
-from stiction.diagnosis.by_recording import GAIN, INERTIA, by_recording_view
-from stiction.diagnosis.evidence import Cells
-from stiction.diagnosis.omnibus import Rest
-from stiction.diagnosis.result import Unexplained
-from stiction.diagnosis.view import View
-from stiction.diagnosis.words import NO_COORDINATE
+from stiction.diagnosis.adequacy.by_recording import GAIN, INERTIA, by_recording_view
+from stiction.diagnosis.adequacy.omnibus import Rest
+from stiction.diagnosis.adequacy.view import View
+from stiction.diagnosis.data.evidence import Cells
+from stiction.diagnosis.findings import verdict
+from stiction.diagnosis.phrases import NO_COORDINATE
+from stiction.diagnosis.records import Unexplained
 from stiction.session import Session
 
 RECORDINGS, BLOCKS, ROWS = 8, 6, 100

@@ -15,12 +15,12 @@ from tests.reference.session_reference import make_session
 import stiction as st
 from stiction.cli import run
 from stiction.closed_loop import replay
-from stiction.diagnosis import loop
-from stiction.diagnosis.evidence import Evidence, SealedError
-from stiction.diagnosis.loop import with_loop_replay
-from stiction.diagnosis.result import CandidateRow
-from stiction.diagnosis.selection import Search
-from stiction.diagnosis.words import loop_words, worse_loop_words
+from stiction.diagnosis.data.evidence import Evidence, SealedError
+from stiction.diagnosis.findings import loop
+from stiction.diagnosis.findings.loop import with_loop_replay
+from stiction.diagnosis.findings.words import loop_words, worse_loop_words
+from stiction.diagnosis.records import CandidateRow
+from stiction.diagnosis.selection.search import Search
 from stiction.fitting.rows import Nuisances
 
 # A power of two: stamps carry no round-off, and a loop made by hand agrees to the last bit.

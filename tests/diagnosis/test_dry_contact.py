@@ -5,10 +5,10 @@ import pytest
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
-from stiction.diagnosis.base import fit_baseline
-from stiction.diagnosis.replay import centre, common_bias, surrogate_residuals
-from stiction.driving import Driving
-from stiction.motion import Kernel
+from stiction.diagnosis.data.replay import centre, common_bias, surrogate_residuals
+from stiction.diagnosis.screening.base import fit_baseline
+from stiction.recording.motion import Kernel
+from stiction.residual.driving import Driving
 
 NOISE = 0.02
 """Standard deviation of the torque that nobody commanded, as a share of F_c."""

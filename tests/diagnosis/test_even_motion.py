@@ -12,8 +12,8 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis.coordinates import _asked
-from stiction.weak_form import WeakForm
+from stiction.diagnosis.adequacy.coordinates import _asked
+from stiction.residual.weak_form import WeakForm
 
 # One seed: a machine that lacks nothing goes evenly, there and back, under its controller.
 SEED = 10320000

@@ -8,9 +8,10 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis import verdict
-from stiction.diagnosis.result import Unexplained
-from stiction.diagnosis.words import NO_COORDINATE, sentence
+from stiction.diagnosis.findings import verdict
+from stiction.diagnosis.findings.words import sentence
+from stiction.diagnosis.phrases import NO_COORDINATE
+from stiction.diagnosis.records import Unexplained
 
 
 @pytest.mark.slow

@@ -7,13 +7,13 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.base import fit_baseline
-from stiction.diagnosis.candidates import candidates, scales_of
-from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.model import with_effect
-from stiction.diagnosis.rounds import _candidates
-from stiction.diagnosis.selection import Search
-from stiction.diagnosis.sharpen import _held
+from stiction.diagnosis.data.evidence import Evidence
+from stiction.diagnosis.screening.base import fit_baseline
+from stiction.diagnosis.screening.candidates import candidates, scales_of
+from stiction.diagnosis.screening.model import with_effect
+from stiction.diagnosis.selection.rounds import _candidates
+from stiction.diagnosis.selection.search import Search
+from stiction.diagnosis.selection.sharpen import _held
 
 LAG_ALONE = {"fall": 0.0}
 

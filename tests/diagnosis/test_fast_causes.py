@@ -8,7 +8,7 @@ from tests.blind.plants import PLANTS
 
 import stiction as st
 from stiction.cli.sessions import load_session
-from stiction.diagnosis.bursts import recurs
+from stiction.diagnosis.adequacy.bursts import recurs
 
 
 def told(seed, folder, number=150):

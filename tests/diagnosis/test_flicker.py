@@ -11,7 +11,7 @@ from tests.reference.session_reference import make_sessions
 
 import stiction as st
 from stiction.fitting.forms import as_session as told_of_each_other
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 
 def diagnosed(seed: int, hidden: tuple[Any, ...] = ()) -> Any:

@@ -12,8 +12,14 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis.held_numbers import FILE, HELD, Held, fixed_parameters, fixed_words
-from stiction.parameter import Parameter
+from stiction.diagnosis.selection.held_numbers import (
+    FILE,
+    HELD,
+    Held,
+    fixed_parameters,
+    fixed_words,
+)
+from stiction.plant.parameter import Parameter
 
 SECONDS = 72.0
 

@@ -7,8 +7,8 @@ import pytest
 from tests.reference.pendulum_reference import DRY, WEIGHT, swung
 
 import stiction as st
-from stiction.diagnosis.base import fit_baseline
-from stiction.diagnosis.holds import holds_of
+from stiction.diagnosis.adequacy.holds import holds_of
+from stiction.diagnosis.screening.base import fit_baseline
 from stiction.plant import Plant
 
 TORQUE = 0.8

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis import conclude
+from stiction.diagnosis.findings import conclude
 from stiction.fitting.minimise import Solution
 
 DT = 2e-3
@@ -82,8 +82,8 @@ def test_an_interrupted_base_ends_the_diagnosis(
     def never(*_: object, **__: object) -> None:
         raise AssertionError("goes on after Ctrl-C")
 
-    monkeypatch.setattr("stiction.diagnosis.base.second_pass", stopped)
-    monkeypatch.setattr("stiction.diagnosis.conclude.surrogate_residuals", never)
+    monkeypatch.setattr("stiction.diagnosis.screening.base.second_pass", stopped)
+    monkeypatch.setattr("stiction.diagnosis.findings.conclude.surrogate_residuals", never)
     found = st.diagnose(PLANT, recordings, surrogates=4)
     assert begins_with_it(found)
     assert "not finished" in found.sentence
@@ -114,7 +114,7 @@ def test_what_was_not_looked_at_any_more_is_said(
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stiction.diagnosis.rounds.Screening.trial", stopped)
+    monkeypatch.setattr("stiction.diagnosis.selection.rounds.Screening.trial", stopped)
     found = st.diagnose(PLANT, recordings, surrogates=4)
     assert begins_with_it(found)
     assert found.verdict == "not_testable"
@@ -123,7 +123,7 @@ def test_what_was_not_looked_at_any_more_is_said(
     reasons = {row.name: row.reason for row in found.candidates}
     assert reasons.keys() == {row.name for row in whole.candidates}
     assert reasons[whole.effects[0].name] == "not refitted: the diagnosis was interrupted"
-    monkeypatch.setattr("stiction.diagnosis.trials.screen", stopped)
+    monkeypatch.setattr("stiction.diagnosis.selection.trials.screen", stopped)
     found = st.diagnose(PLANT, recordings, surrogates=4)
     reasons = {row.name: row.reason for row in found.candidates}
     assert reasons[whole.effects[0].name] == "not screened: the diagnosis was interrupted"
@@ -172,7 +172,7 @@ def test_a_second_interruption_ends_at_once(
 def test_rows_that_test_may_be_opened_after_an_opening_that_was_interrupted(
     recordings: list[st.Recording], whole: st.Diagnosis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from stiction.diagnosis.evidence import Evidence
+    from stiction.diagnosis.data.evidence import Evidence
 
     rows = Evidence._rows
 

@@ -16,9 +16,9 @@ from tests.reference.laws import lugre
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis import laws
-from stiction.diagnosis.model import Model
-from stiction.stated import Friction
+from stiction.diagnosis.screening.model import Model
+from stiction.diagnosis.selection import laws
+from stiction.plant.stated import Friction
 
 SECONDS = 72.0
 
@@ -174,7 +174,7 @@ def test_a_law_that_leads_nowhere_is_fitted_to_its_end_only_where_it_was_asked_f
         seen.extend(whole(*given, **named))
         return seen
 
-    monkeypatch.setattr("stiction.diagnosis.conclude.rivals_of", looks)
+    monkeypatch.setattr("stiction.diagnosis.findings.conclude.rivals_of", looks)
     names = ("maxwell_slip",) if asked else ()
     found = st.diagnose(as_plant(machine), as_session(machine), surrogates=6, laws=names)
     assert found.effects

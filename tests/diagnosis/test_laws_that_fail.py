@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis import laws
-from stiction.diagnosis.evidence import Cells
-from stiction.diagnosis.gain import MOST_LEFT, HeldOut, gain_of
+from stiction.diagnosis.data.evidence import Cells
+from stiction.diagnosis.data.gain import MOST_LEFT, HeldOut, gain_of
+from stiction.diagnosis.selection import laws
 from stiction.errors import InputError
 from stiction.fitting.variables import Variables
 

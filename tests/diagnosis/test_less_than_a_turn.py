@@ -11,7 +11,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.chance import lacks_repeats, odds, share_of_phases, share_of_waves
+from stiction.diagnosis.selection.chance import lacks_repeats, odds, share_of_phases, share_of_waves
 
 SPAN = 4.0
 """rad that a machine moves over once it is geared down."""

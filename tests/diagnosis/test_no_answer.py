@@ -10,8 +10,12 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis import trials
-from stiction.diagnosis.confirm import (
+from stiction.diagnosis.data.evidence import Cells
+from stiction.diagnosis.data.gain import HeldOut
+from stiction.diagnosis.findings.words import no_machine
+from stiction.diagnosis.records import CandidateRow
+from stiction.diagnosis.selection import trials
+from stiction.diagnosis.selection.confirm import (
     AGAINST,
     NO_BETTER,
     NO_MACHINE,
@@ -19,11 +23,7 @@ from stiction.diagnosis.confirm import (
     confirm_on_test,
     reject_without_machine,
 )
-from stiction.diagnosis.evidence import Cells
-from stiction.diagnosis.gain import HeldOut
-from stiction.diagnosis.result import CandidateRow
-from stiction.diagnosis.selection import Search
-from stiction.diagnosis.words import no_machine
+from stiction.diagnosis.selection.search import Search
 from stiction.errors import NotEnoughData
 
 BLOCKS, ROWS = 40, 50

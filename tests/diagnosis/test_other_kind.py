@@ -12,11 +12,11 @@ from tests.diagnosis.second_base import fail_the_second_base
 import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
-from stiction.diagnosis import left_open
-from stiction.diagnosis.decide import degeneracy
-from stiction.diagnosis.result import Cause
-from stiction.diagnosis.verdict import relatives
-from stiction.diagnosis.words import THE_LAW
+from stiction.diagnosis.findings.verdict import relatives
+from stiction.diagnosis.phrases import THE_LAW
+from stiction.diagnosis.records import Cause
+from stiction.diagnosis.selection import left_open
+from stiction.diagnosis.selection.decide import degeneracy
 from stiction.errors import NotEnoughData
 
 SHORT: Any = {"seconds": 8.0, "recordings": 3, "dt": 0.004, "counts": 131072, "loop": "open"}

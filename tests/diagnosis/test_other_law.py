@@ -11,10 +11,10 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis import left_open
-from stiction.diagnosis.passing import MOMENTS
-from stiction.diagnosis.result import Cause, Unexplained
-from stiction.diagnosis.words import NO_COORDINATE
+from stiction.diagnosis.adequacy.passing import MOMENTS
+from stiction.diagnosis.phrases import NO_COORDINATE
+from stiction.diagnosis.records import Cause, Unexplained
+from stiction.diagnosis.selection import left_open
 
 
 def test_only_what_the_law_lacks_is_named_of_a_machine_with_another_law() -> None:

@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.advice import APART, BY_COORDINATE
-from stiction.diagnosis.by_recording import BY_RECORDING
-from stiction.diagnosis.contact import slides_of
-from stiction.diagnosis.coordinates import COORDINATES, UNJUDGED, Coordinate
-from stiction.diagnosis.held_numbers import HELD
-from stiction.diagnosis.omnibus import Rest, View
-from stiction.diagnosis.own import own_coordinate
-from stiction.diagnosis.passing import DRIFT, MOMENTS
-from stiction.diagnosis.periodic import COUPLED, FREQUENCY, ORDERS
-from stiction.diagnosis.presentation import PRESENTATIONS, Wave
-from stiction.diagnosis.response import RESPONSE
-from stiction.diagnosis.smoother import BINS, smoother
-from stiction.parameter import Parameter
+from stiction.diagnosis.adequacy.by_recording import BY_RECORDING
+from stiction.diagnosis.adequacy.coordinates import COORDINATES, UNJUDGED, Coordinate
+from stiction.diagnosis.adequacy.omnibus import Rest, View
+from stiction.diagnosis.adequacy.passing import DRIFT, MOMENTS
+from stiction.diagnosis.adequacy.periodic import COUPLED, FREQUENCY, ORDERS
+from stiction.diagnosis.adequacy.response import RESPONSE
+from stiction.diagnosis.adequacy.smoother import BINS, smoother
+from stiction.diagnosis.data.contact import slides_of
+from stiction.diagnosis.findings.advice import APART, BY_COORDINATE
+from stiction.diagnosis.findings.own import own_coordinate
+from stiction.diagnosis.findings.presentation import PRESENTATIONS, Wave
+from stiction.diagnosis.selection.held_numbers import HELD
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 from stiction.report.views import HINTS
-from stiction.stated import Effect
 
 SPACING = 0.005
 

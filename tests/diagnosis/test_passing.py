@@ -11,9 +11,9 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis.evidence import Cells
-from stiction.diagnosis.passing import drift_view, moments_view
-from stiction.trajectory import FloatArray
+from stiction._support.arrays import FloatArray
+from stiction.diagnosis.adequacy.passing import drift_view, moments_view
+from stiction.diagnosis.data.evidence import Cells
 
 SPACING = 5e-3  # s
 LASTS = 20.0  # s

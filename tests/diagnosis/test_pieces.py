@@ -15,28 +15,35 @@ import pytest
 import stiction as st
 from stiction.catalogue import EffectRecord
 from stiction.cli import run
-from stiction.diagnosis import choose as choosing
-from stiction.diagnosis import listing
-from stiction.diagnosis.candidates import Scales, candidates, excluded_names, present, scales_of
-from stiction.diagnosis.choose import Choice, choose, strangers
-from stiction.diagnosis.decide import OUT_OF_RANGE, Trial
-from stiction.diagnosis.evidence import Evidence, Plan, SealedError
-from stiction.diagnosis.gain import HeldOut, gain_of
-from stiction.diagnosis.model import LEAST_GIVEN, Model, fit_model, with_effect
-from stiction.diagnosis.periodic import waves_of
-from stiction.diagnosis.regression import project
-from stiction.diagnosis.replay import centre, noise_of, surrogate_residuals
-from stiction.diagnosis.result import Cause, Diagnosis
-from stiction.diagnosis.trials import Screening
-from stiction.diagnosis.verdict import relatives
-from stiction.diagnosis.words import value_words
-from stiction.finite import finite
+from stiction.diagnosis.adequacy.periodic import waves_of
+from stiction.diagnosis.data.evidence import Evidence, Plan, SealedError
+from stiction.diagnosis.data.gain import HeldOut, gain_of
+from stiction.diagnosis.data.replay import centre, noise_of, surrogate_residuals
+from stiction.diagnosis.findings.result import Diagnosis
+from stiction.diagnosis.findings.verdict import relatives
+from stiction.diagnosis.findings.words import value_words
+from stiction.diagnosis.records import Cause
+from stiction.diagnosis.screening.candidates import (
+    Scales,
+    candidates,
+    excluded_names,
+    present,
+    scales_of,
+)
+from stiction.diagnosis.screening.model import LEAST_GIVEN, Model, fit_model, with_effect
+from stiction.diagnosis.screening.regression import project
+from stiction.diagnosis.selection import choose as choosing
+from stiction.diagnosis.selection import listing
+from stiction.diagnosis.selection.choose import Choice, choose, strangers
+from stiction.diagnosis.selection.decide import OUT_OF_RANGE, Trial
+from stiction.diagnosis.selection.trials import Screening
 from stiction.fitting.levenberg import escape, levenberg_marquardt
 from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width
-from stiction.parameter import Parameter
-from stiction.stated import Effect
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
+from stiction.residual.finite import finite
 
 DT = 1e-3
 COUNT = 2.0 * math.pi / 2**18
@@ -259,7 +266,7 @@ def test_a_gain_is_the_share_of_power_removed_with_an_interval_that_holds_it() -
     source = np.random.default_rng(1)
     before = source.standard_normal(4000)
     blocks = np.repeat(np.arange(20), 200)
-    from stiction.diagnosis.evidence import Cells
+    from stiction.diagnosis.data.evidence import Cells
 
     cells = Cells(blocks, blocks * 0, blocks * 0, ("",))
     test = HeldOut((before, 0.5 * before), np.ones(4000), before, cells, ())
@@ -533,7 +540,7 @@ def test_an_interrupted_refit_ends_the_search(monkeypatch: pytest.MonkeyPatch) -
     ]
     plant = true_plant()
     assert st.diagnose(plant, recordings, surrogates=4).effects
-    monkeypatch.setattr("stiction.diagnosis.trials.fit_model", interrupted)
+    monkeypatch.setattr("stiction.diagnosis.selection.trials.fit_model", interrupted)
     found = st.diagnose(plant, recordings, surrogates=4)
     assert not found.success
     assert found.effects == ()
@@ -546,7 +553,7 @@ def test_an_interrupted_diagnosis_keeps_the_best_so_far(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stiction.diagnosis.trials.screen", interrupted)
+    monkeypatch.setattr("stiction.diagnosis.selection.trials.screen", interrupted)
     recordings = [recorded(k, role=role) for k, role in enumerate(("train", "select", "test"))]
     found = st.diagnose(true_plant(), recordings, surrogates=4)
     assert not found.success

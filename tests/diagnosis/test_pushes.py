@@ -10,11 +10,11 @@ import pytest
 from tests.reference.coulomb_reference import simulate_coulomb
 
 import stiction as st
-from stiction.diagnosis.words import push_words
+from stiction.diagnosis.findings.words import push_words
 from stiction.fitting.pushes import Watch
 from stiction.fitting.rows import Push
 from stiction.recording.blocks import Part
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT, SECONDS = 1e-3, 10.0
 TRUE = {"inertia": 0.006, "coulomb": 0.25, "viscous": 0.02}

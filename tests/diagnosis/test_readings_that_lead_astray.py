@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.base import fit_baseline
-from stiction.diagnosis.conclude import surrogates_of
-from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.model import Model, fit_model
-from stiction.diagnosis.moved import _powers, borne_out_in_motion
-from stiction.diagnosis.selection import Search
+from stiction.diagnosis.data.evidence import Evidence
+from stiction.diagnosis.findings.conclude import surrogates_of
+from stiction.diagnosis.screening.base import fit_baseline
+from stiction.diagnosis.screening.model import Model, fit_model
+from stiction.diagnosis.selection.moved import _powers, borne_out_in_motion
+from stiction.diagnosis.selection.search import Search
 from stiction.fitting.forms import Through
 from stiction.fitting.rows import Nuisances
-from stiction.parameter import Parameter
-from stiction.shooting import ShootingForm
-from stiction.stated import Effect
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
+from stiction.residual.shooting import ShootingForm
 
 INERTIA, COULOMB, VISCOUS = 2.4e-3, 0.13, 7.5e-3
 DT = 2e-3

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from tests.blind.reliability import counted
 
-from stiction.diagnosis.reliability import Reliability, manner, reliability_of
-from stiction.diagnosis.result import Cause
+from stiction.diagnosis.findings.reliability import Reliability, manner, reliability_of
+from stiction.diagnosis.records import Cause
 
 
 def cause(*alike: str, held: Reliability | None = None) -> Cause:

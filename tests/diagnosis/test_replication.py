@@ -11,9 +11,9 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.block_gains import lacks_excitation
-from stiction.diagnosis.evidence import Plan
-from stiction.diagnosis.replication import confirms
+from stiction.diagnosis.data.evidence import Plan
+from stiction.diagnosis.screening.block_gains import lacks_excitation
+from stiction.diagnosis.selection.replication import confirms
 
 BLOCKS, ROWS = 40, 200
 FITTED = np.repeat(np.arange(BLOCKS) < 28, ROWS)

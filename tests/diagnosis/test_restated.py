@@ -13,7 +13,7 @@ import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
 from stiction.diagnosis import pipeline, restated
-from stiction.diagnosis.laws import Rival
+from stiction.diagnosis.selection.laws import Rival
 from stiction.errors import NotEnoughData
 
 SPEC = Spec(

@@ -10,15 +10,16 @@ import numpy as np
 import pytest
 
 from stiction.catalogue import effects
-from stiction.diagnosis import block_gains, decide, rounds, together
-from stiction.diagnosis.beside import doubt_by_forms, stands_out
-from stiction.diagnosis.choose import Choice
-from stiction.diagnosis.decide import Trial
-from stiction.diagnosis.exact_forms import doubt_geometry
-from stiction.diagnosis.restarts import from_the_first
-from stiction.diagnosis.result import CandidateRow, Cause, Unexplained
-from stiction.diagnosis.selection import Search
-from stiction.diagnosis.trials import Screening
+from stiction.diagnosis.adequacy.exact_forms import doubt_geometry
+from stiction.diagnosis.records import CandidateRow, Cause, Unexplained
+from stiction.diagnosis.screening import block_gains
+from stiction.diagnosis.selection import decide, rounds, together
+from stiction.diagnosis.selection.beside import doubt_by_forms, stands_out
+from stiction.diagnosis.selection.choose import Choice
+from stiction.diagnosis.selection.decide import Trial
+from stiction.diagnosis.selection.restarts import from_the_first
+from stiction.diagnosis.selection.search import Search
+from stiction.diagnosis.selection.trials import Screening
 
 BLOCKS = np.ones(30), np.ones(30)
 

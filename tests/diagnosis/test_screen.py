@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.candidates import Candidate, Scales, candidates
+from stiction.diagnosis.data.evidence import Plan
 from stiction.diagnosis.defaults import ALPHA
-from stiction.diagnosis.evidence import Plan
-from stiction.diagnosis.regression import project
-from stiction.diagnosis.screen import FORMS, Problem, Score, _threshold, screen
-from stiction.diagnosis.signatures import Signatures
-from stiction.parameter import Parameter
-from stiction.stated import Effect
+from stiction.diagnosis.screening.candidates import Candidate, Scales, candidates
+from stiction.diagnosis.screening.regression import project
+from stiction.diagnosis.screening.screen import FORMS, Problem, Score, _threshold, screen
+from stiction.diagnosis.screening.signatures import Signatures
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 
 ROWS, FITTED, SURROGATES = 600, 400, 8
 NAMES = ("cogging", "torque_bias", "input_delay")

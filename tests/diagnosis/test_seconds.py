@@ -11,9 +11,9 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis import seconds
-from stiction.diagnosis.replication import vanishes_where_active
-from stiction.diagnosis.seconds import holds_more, tried_names
+from stiction.diagnosis.selection import seconds
+from stiction.diagnosis.selection.replication import vanishes_where_active
+from stiction.diagnosis.selection.seconds import holds_more, tried_names
 from stiction.errors import InputError
 from stiction.recording.split import split
 

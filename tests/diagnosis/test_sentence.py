@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.result import Unexplained
-from stiction.diagnosis.words import (
-    LEAVES_NOTHING,
-    OUTWEIGHED,
-    UNREPEATED,
-    join_words,
-    sentence,
-    unseen_words,
-)
+from stiction._support.wording import join_words
+from stiction.diagnosis.data.gain import Gain
+from stiction.diagnosis.findings.words import sentence, unseen_words
+from stiction.diagnosis.phrases import LEAVES_NOTHING, OUTWEIGHED, UNREPEATED
+from stiction.diagnosis.records import Unexplained
 
 
 def test_words_join_and_say_what_was_not_confirmed() -> None:

@@ -13,12 +13,13 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
-from stiction.diagnosis import sharpen, verdict
-from stiction.diagnosis.omnibus import Rest
-from stiction.diagnosis.sharpen import has_free_shapes
-from stiction.diagnosis.view import View
-from stiction.parameter import Parameter
-from stiction.stated import Effect
+from stiction.diagnosis.adequacy.omnibus import Rest
+from stiction.diagnosis.adequacy.view import View
+from stiction.diagnosis.findings import verdict
+from stiction.diagnosis.selection import sharpen
+from stiction.diagnosis.selection.sharpen import has_free_shapes
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 
 # Friction that repeats 8 and 24 times a turn, or once and three times, one wave nearly as large as
 # the other: where they cancel, the first alone does harm, and the rows that decide do not want it.

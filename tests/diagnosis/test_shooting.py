@@ -11,13 +11,13 @@ import pytest
 import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
-from stiction.diagnosis.evidence import Evidence
-from stiction.diagnosis.model import Model, fit_model
-from stiction.diagnosis.replay import noise_of, surrogate_residuals
+from stiction.diagnosis.data.evidence import Evidence
+from stiction.diagnosis.data.replay import noise_of, surrogate_residuals
+from stiction.diagnosis.screening.model import Model, fit_model
 from stiction.fitting.forms import HORIZONS_S, Through, horizon_of, residual_sentence
 from stiction.fitting.rows import Nuisances
-from stiction.shooting import ShootingForm
-from stiction.weak_form import WeakForm
+from stiction.residual.shooting import ShootingForm
+from stiction.residual.weak_form import WeakForm
 
 DT = 1e-3
 COARSE, FINE = 2**12, 2**18

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from stiction.diagnosis.evidence import Cells
-from stiction.diagnosis.periodic import frequency_view
-from stiction.diagnosis.regression import bounded_gains
-from stiction.diagnosis.result import CandidateRow
-from stiction.diagnosis.verdict import verdict_of
+from stiction.diagnosis.adequacy.periodic import frequency_view
+from stiction.diagnosis.data.evidence import Cells
+from stiction.diagnosis.findings.verdict import verdict_of
+from stiction.diagnosis.records import CandidateRow
+from stiction.diagnosis.screening.regression import bounded_gains
 
 
 def test_gains_within_bounds_are_those_of_the_bounded_least_squares() -> None:

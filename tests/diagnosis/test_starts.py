@@ -8,7 +8,7 @@ from tests.reference.ladder_spring import LadderSpring
 import stiction as st
 from stiction.fitting.recording_starts import fit_starts
 from stiction.fitting.rows import WARM_UP_S, Nuisances, Rows
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT = 0.01
 NOISE = 0.1  # N

@@ -8,7 +8,7 @@ from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
 import stiction as st
-from stiction.diagnosis.candidates import Scales, candidates
+from stiction.diagnosis.screening.candidates import Scales, candidates
 from stiction.residual import effort_residual
 
 SHAFT = (("shaft_compliance", 0.013),)

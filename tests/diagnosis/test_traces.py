@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.diagnosis.pictures import ROLES, Trace
-from stiction.trajectory import FloatArray
+from stiction._support.arrays import FloatArray
+from stiction.diagnosis.findings.pictures import ROLES, Trace
 
 DT = 2e-3
 

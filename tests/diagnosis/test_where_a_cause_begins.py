@@ -11,9 +11,9 @@ import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
 from stiction.catalogue import effects
-from stiction.diagnosis.candidates import Candidate
-from stiction.diagnosis.signatures import gain_at
-from stiction.diagnosis.trials import _of_its_share
+from stiction.diagnosis.screening.candidates import Candidate
+from stiction.diagnosis.screening.signatures import gain_at
+from stiction.diagnosis.selection.trials import _of_its_share
 
 
 def told(folder: Path, **spec: Any) -> st.Diagnosis:

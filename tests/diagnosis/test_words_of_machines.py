@@ -11,14 +11,15 @@ import pytest
 
 import stiction as st
 from stiction._native import Motion
-from stiction.diagnosis.advice import advise
-from stiction.diagnosis.candidates import Scales
-from stiction.diagnosis.listing import row_of_score
-from stiction.diagnosis.orders import open_orders, order_words
-from stiction.diagnosis.remedies import GOALS, experiment_words, meaning_of
-from stiction.diagnosis.result import Unexplained
-from stiction.diagnosis.screen import Score
-from stiction.diagnosis.words import NO_COORDINATE, sentence, what
+from stiction.diagnosis.findings.advice import advise
+from stiction.diagnosis.findings.remedies import GOALS, experiment_words, meaning_of
+from stiction.diagnosis.findings.words import sentence, what
+from stiction.diagnosis.phrases import NO_COORDINATE
+from stiction.diagnosis.records import Unexplained
+from stiction.diagnosis.screening.candidates import Scales
+from stiction.diagnosis.screening.orders import open_orders, order_words
+from stiction.diagnosis.screening.screen import Score
+from stiction.diagnosis.selection.listing import row_of_score
 from stiction.fitting.result import FitParameter
 from stiction.plan import EXPERIMENTS
 from stiction.report.views import HINTS, hint

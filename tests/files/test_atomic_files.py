@@ -19,7 +19,7 @@ from tests.report.canned import diagnosis, plant
 
 import stiction as st
 from stiction import plot
-from stiction.atomic_files import atomic_write, create_text, subfolder, write_text
+from stiction._support.atomic_files import atomic_write, create_text, subfolder, write_text
 from stiction.plan.result import Signal
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="asks for what POSIX promises")
@@ -173,7 +173,7 @@ def test_what_a_killed_program_left_is_cleared_by_the_next_and_not_what_is_being
 ) -> None:
     code = (
         "import os, signal, sys; from pathlib import Path; "
-        "from stiction.atomic_files import atomic_write\n"
+        "from stiction._support.atomic_files import atomic_write\n"
         "with atomic_write(Path(sys.argv[1])) as file:\n"
         "    file.write(b'half'); file.flush(); os.kill(os.getpid(), signal.SIGKILL)"
     )

@@ -8,7 +8,7 @@ from scipy.ndimage import minimum_filter1d, uniform_filter1d
 
 from stiction import InputError
 from stiction._native import adaptively_smoothed as by_the_core
-from stiction.adaptive import smooth_adaptively
+from stiction.residual.adaptive import smooth_adaptively
 
 DT = 1e-3
 COUNT = 2.0 * np.pi / 2**18

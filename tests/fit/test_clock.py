@@ -12,7 +12,7 @@ import stiction as st
 from stiction.fitting.clock import bounded_plants, follows
 from stiction.fitting.rows import rows_of
 from stiction.recording import Part
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT = 1e-3
 

@@ -21,7 +21,7 @@ from stiction.fitting import minimise, solve
 from stiction.fitting.minimise import HARDENING, Solution
 from stiction.fitting.rows import Nuisances, Rows
 from stiction.fitting.variables import Variables
-from stiction.weak_form import Start, WeakForm
+from stiction.residual.weak_form import Start, WeakForm
 
 DT = 1e-3
 TRUE = {"inertia": 0.0076, "coulomb": 0.3, "viscous": 0.05}

@@ -6,8 +6,8 @@ from threading import Lock
 import numpy as np
 import pytest
 
+from stiction._support.workers import with_workers
 from stiction.fitting.likeliest import likeliest
-from stiction.workers import with_workers
 
 
 @pytest.mark.parametrize("number", [1, 2, 4])

@@ -4,7 +4,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import stiction as st
-from stiction.products import on_one_thread
+from stiction._support.products import on_one_thread
 
 
 def most_threads():

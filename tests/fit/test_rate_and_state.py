@@ -106,7 +106,7 @@ def test_no_law_without_an_age_follows_the_step_on_rows_that_were_not_fitted(
 
 def held_around_the_step(own: st.Plant, recording: st.Recording) -> float:
     """Residual of the blocks in between where the speed steps, after a fit to every other block."""
-    from stiction.weak_form import WeakForm
+    from stiction.residual.weak_form import WeakForm
 
     form = WeakForm(own, recording, every=0.01)
     since = form.time - recording.time[0]

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 
 import stiction as st
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 INERTIA, LEVEL, STIFFNESS, VISCOUS = 0.0067, 0.9, 18.9, 0.024
 FINE = 64

@@ -4,7 +4,7 @@ import pytest
 from tests.reference.pendulum_reference import DRY, INERTIA, WEIGHT, swung
 
 import stiction as st
-from stiction.diagnosis.base import fit_baseline, fit_wider_baseline
+from stiction.diagnosis.screening.base import fit_baseline, fit_wider_baseline
 from stiction.fitting.forms import residual_sentence as residual_told
 from stiction.plant import Plant
 
@@ -66,7 +66,7 @@ def test_a_diagnosis_says_that_kernels_were_widened():
 def test_kernels_that_the_recordings_cannot_hold_change_nothing(monkeypatch):
     swings = recordings(error=1e-3)
     narrow, base = fit_baseline(pendulum(), swings)
-    for module in ("fitting.first_pass", "diagnosis.base"):
+    for module in ("fitting.first_pass", "diagnosis.screening.base"):
         monkeypatch.setattr(f"stiction.{module}.wider_of", lambda *_: 12.0)
     result = st.fit(pendulum(), st.Session(swings))
     assert result.success

@@ -14,8 +14,8 @@ from stiction.fitting import first_pass, forms
 from stiction.fitting.forms import followable, residual_sentence, restore_bounds, shows_its_ring
 from stiction.fitting.minimise import Solution, launch
 from stiction.fitting.rows import Rows
-from stiction.shooting import ShootingForm
-from stiction.weak_form import WeakForm
+from stiction.residual.shooting import ShootingForm
+from stiction.residual.weak_form import WeakForm
 
 
 def bristles(stiffness: float | dict[str, Any], **others: float) -> Plant:

@@ -11,7 +11,7 @@ import pytest
 
 import stiction as st
 from stiction._native import CancelToken
-from stiction.workers import side_by_side, with_workers
+from stiction._support.workers import side_by_side, with_workers
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from tests.reference.hsieh_pan_reference import follow_motion
 
 import stiction as st
 from stiction.fitting.start import complete, yielding_starts
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT = 0.01
 NOISE = 0.005

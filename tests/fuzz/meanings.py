@@ -261,7 +261,7 @@ OF_TARGET: dict[str, Drawer] = {
     "stated.Friction.parameters": lambda d: f"{{'coulomb': Parameter({d.size()})}}",
     "stated.Effect.parameters": lambda d: f"{{'order': Parameter({d.size()})}}",
     "stated.check_parameters.given": lambda d: f"{{'coulomb': Parameter({d.size()})}}",
-    "parameter.Parameter.read.given": lambda d: f"{{'value': {d.size()}}}",
+    "plant.Parameter.read.given": lambda d: f"{{'value': {d.size()}}}",
     "Plant.simulate.position": _level,
     "Plant.simulate.velocity": _level,
     "plan.plan.position": lambda d: d.size(-1.0, 1.0),

@@ -20,7 +20,7 @@ HIDDEN = {
     "bench": "lays out, diagnoses and counts folders of sessions; its verb is run as a command",
 }
 """Packages that are not looked through, and why."""
-BESIDE = ("_native", "parameter", "stated")
+BESIDE = ("_native",)
 """Modules that are no packages, and whose names users or the issue's callers take."""
 EXCLUDED = {
     "stiction.InputError": "takes a sentence, as every exception does",
@@ -82,7 +82,7 @@ class Target:
 def modules() -> list[str]:
     """Where public names are."""
     inside = pkgutil.iter_modules(stiction.__path__)
-    packages = [m.name for m in inside if m.ispkg and m.name not in HIDDEN]
+    packages = [m.name for m in inside if m.ispkg and m.name not in HIDDEN and m.name[0] != "_"]
     return ["stiction", *(f"stiction.{name}" for name in [*packages, *BESIDE])]
 
 

@@ -13,7 +13,7 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "python" / "stiction"
 BENCH = PACKAGE / "bench"
 SIMULATOR = BENCH / "ordinary"
-ALLOWED = {"stiction.atomic_files", "stiction.errors"}
+ALLOWED = {"stiction._support.atomic_files", "stiction.errors"}
 """How a file is written whole, and how a fault is told: neither knows of friction."""
 OUTSIDE = {"numpy", "scipy", "pyarrow"}
 USERS = {PACKAGE / "cli" / "bench.py"}

@@ -14,11 +14,11 @@ TABLES: dict[str, tuple[int, str]] = {
     "bench/ordinary/hidden.py": (11, "what each hides in a machine that knows no catalogue"),
     "compare/document.py": (3, "properties of laws that are called as effects are"),
     "compare/properties/sliding.py": (2, "properties of laws that are called as effects are"),
-    "diagnosis/presentation.py": (29, "the entry of each effect"),
+    "diagnosis/findings/presentation.py": (29, "the entry of each effect"),
     "export/mjcf.py": (4, "the effects that simulators have elements for"),
     "ode.py": (3, "the formula of each"),
     "paper/local.py": (1, "the effect that an experiment is simulated with"),
-    "steady.py": (1, "a family that is called as one of its effects is"),
+    "plant/steady.py": (1, "a family that is called as one of its effects is"),
 }
 """Names that may stand in a file, and why: the tables themselves. None is added without need."""
 
@@ -39,7 +39,9 @@ def test_effects_are_named_in_tables_alone() -> None:
 
 
 def test_every_effect_has_an_entry() -> None:
-    assert sorted(literals(PACKAGE / "diagnosis" / "presentation.py")) == sorted(st.effects().names)
+    assert sorted(literals(PACKAGE / "diagnosis" / "findings" / "presentation.py")) == sorted(
+        st.effects().names
+    )
 
 
 def test_properties_tell_the_effects_that_are_meant() -> None:

@@ -166,15 +166,15 @@ PUBLIC = {
     "closed_loop:Controller.acting",
     "compensation:Compensation.stepped",
     "demo_session:hidden",
-    "diagnosis.result:Diagnosis.gap_closed",
+    "diagnosis.findings.result:Diagnosis.gap_closed",
     "library.comparison:UnitComparison.differing",
     "library.comparison:UnitComparison.left",
     "library.entry_file:EntryNumber.expected",
-    "plant:Plant.following",
+    "plant.plant:Plant.following",
     "plot:thinned",
     "recording.recording:Recording.entered",
     "recording.table:Table.renamed",
-    "residual:started",
+    "residual.effort:started",
     "robot.fit:RobotFit.carried",
 }
 """Documented to users under these names, which stay valid."""

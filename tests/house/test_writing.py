@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[2] / "python" / "stiction"
-THE_MODULE = PACKAGE / "atomic_files.py"
+THE_MODULE = PACKAGE / "_support" / "atomic_files.py"
 METHODS = {"write_text", "write_bytes", "touch", "symlink_to", "hardlink_to", "rename", "tofile"}
 """Of paths and arrays, whatever they are called on."""
 OF_MODULES = {
@@ -88,7 +88,7 @@ def writes(path: Path) -> Iterator[str]:
 
 def test_every_file_is_written_through_the_one_module() -> None:
     found = [each for path in sources() for each in writes(path)]
-    assert found == [], "write through stiction.atomic_files"
+    assert found == [], "write through stiction._support.atomic_files"
 
 
 @pytest.mark.parametrize(

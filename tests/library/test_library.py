@@ -15,8 +15,8 @@ from stiction.fitting import FitParameter
 from stiction.library import Entry, EntryNumber
 from stiction.library.comparison import plant_like, verdict_of
 from stiction.library.entry_file import read_entry
-from stiction.parameter import Parameter
-from stiction.stated import Effect
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 
 FILES = sorted((Path(library.__file__).parent / "entries").glob("*.toml"))
 GOOD = """\

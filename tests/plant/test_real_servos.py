@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.residual import free_run
+from stiction.residual.effort import free_run
 
 COLUMNS = {
     "time": {"name": "timestamp", "unit": "s"},

@@ -9,9 +9,16 @@ import pytest
 
 from stiction import InputError, Plant, Recording
 from stiction._native import played
-from stiction.motion import Kernel, count_of, evenly, hold_at_rest, noise_of, zero_order_hold
+from stiction.recording.motion import (
+    Kernel,
+    count_of,
+    evenly,
+    hold_at_rest,
+    noise_of,
+    zero_order_hold,
+)
 from stiction.residual import effort_residual, free_run
-from stiction.weak_form import WeakForm
+from stiction.residual.weak_form import WeakForm
 
 DT = 1e-3
 # The kernel leaves what a third-order splined motion has beyond its second derivative.

@@ -9,9 +9,9 @@ from tests.reference.servo_reference import Servo
 import stiction as st
 from stiction.closed_loop import replay
 from stiction.fitting.start import complete, with_light_friction
-from stiction.loop_form import LoopForm
-from stiction.residual import free_run
-from stiction.weak_form import WeakForm
+from stiction.residual.effort import free_run
+from stiction.residual.loop_form import LoopForm
+from stiction.residual.weak_form import WeakForm
 
 DT = 5e-3
 PLANT = {

@@ -9,8 +9,8 @@ import pytest
 from tests.reference.servo_reference import Servo
 
 import stiction as st
-from stiction.loop_form import LoopForm
-from stiction.residual import free_run
+from stiction.residual.effort import free_run
+from stiction.residual.loop_form import LoopForm
 
 DT = 5e-3
 COUNT = 2.0 * np.pi / 4096

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from stiction._support.units import SI_UNIT, UNITS, ending_unit, find_unit, to_si
 from stiction.errors import InputError
-from stiction.recording.units import SI_UNIT, UNITS, ending_unit, find_unit, to_si
 
 COUNT_SIZE = 2.0 * math.pi / 4096.0
 

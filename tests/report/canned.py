@@ -8,12 +8,12 @@ import numpy as np
 
 import stiction as st
 from stiction.diagnosis import Diagnosis
-from stiction.diagnosis.bets import Bet, Bets
-from stiction.diagnosis.coordinates import COORDINATES
-from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.omnibus import Rest, View
-from stiction.diagnosis.pictures import Pictures, Stretch, Trace
-from stiction.diagnosis.result import (
+from stiction.diagnosis.adequacy.coordinates import COORDINATES
+from stiction.diagnosis.adequacy.omnibus import Rest, View
+from stiction.diagnosis.data.gain import Gain
+from stiction.diagnosis.findings.bets import Bet, Bets
+from stiction.diagnosis.findings.pictures import Pictures, Stretch, Trace
+from stiction.diagnosis.records import (
     Advice,
     CandidateRow,
     Cause,

@@ -15,12 +15,12 @@ import pytest
 from tests.report.canned import diagnosis, trace
 from tests.report.test_report import Page
 
+from stiction._support.arrays import FloatArray
 from stiction.diagnosis import Diagnosis
 from stiction.report import explorer as parts
 from stiction.report import write
 from stiction.report.explorer import explorer
 from stiction.report.packing import Packed, pack
-from stiction.trajectory import FloatArray
 
 
 def unpacked(packed: Packed) -> FloatArray:

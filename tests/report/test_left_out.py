@@ -18,8 +18,8 @@ from tests.report.test_report import Page
 import stiction as st
 from stiction.cli import run
 from stiction.diagnosis import Diagnosis
-from stiction.diagnosis.omnibus import Rest, View
-from stiction.diagnosis.pictures import Tracking
+from stiction.diagnosis.adequacy.omnibus import Rest, View
+from stiction.diagnosis.findings.pictures import Tracking
 from stiction.report import drawings, figures, motion_figures
 from stiction.report.axis import Axis
 from stiction.report.chart import Chart, Line, Panel

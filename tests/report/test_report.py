@@ -26,17 +26,17 @@ from tests.report.canned import (
 )
 
 import stiction as st
-from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.omnibus import Rest
-from stiction.diagnosis.result import CandidateRow, Verdict
+from stiction._support.numbers import between, digits, percent, quantity, tick
+from stiction.diagnosis.adequacy.omnibus import Rest
+from stiction.diagnosis.data.gain import Gain
+from stiction.diagnosis.records import CandidateRow, Verdict
 from stiction.fitting.waves import waves_of
-from stiction.parameter import Parameter
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 from stiction.report import write
 from stiction.report.figures import largest_views
 from stiction.report.labels import shorten
-from stiction.report.numbers import between, digits, percent, quantity, tick
 from stiction.report.sections.parameters import rows_of_effect
-from stiction.stated import Effect
 
 LARGEST_REPORT = 5_000_000  # bytes; what an e-mail carries
 HOSTILE = "<script>alert(1)</script>&\"' $x^2$ -->]]> \u202e名.csv"

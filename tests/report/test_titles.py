@@ -11,8 +11,8 @@ from tests.report.test_report import undrawn
 
 import stiction as st
 from stiction.diagnosis import Diagnosis
-from stiction.diagnosis.gain import Gain
-from stiction.diagnosis.result import Advice, Verdict
+from stiction.diagnosis.data.gain import Gain
+from stiction.diagnosis.records import Advice, Verdict
 from stiction.report import write
 from stiction.report.labels import distinct_labels
 from stiction.report.titles import effect_title

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction._support.scale import Scale, scale_for
 from stiction.fitting.variables import with_effort_in
-from stiction.report.scale import Scale, scale_for
 
 PLANT = st.Plant.from_dict(
     {

@@ -14,14 +14,14 @@ import pytest
 from tests.reference.coulomb_reference import simulate_coulomb
 
 import stiction as st
+from stiction._support.frozen import ByPath, Frozen
 from stiction.closed_loop import ClosedLoop
 from stiction.compare.result import Comparison, Row
-from stiction.diagnosis.result import CandidateRow, LawRow
+from stiction.diagnosis.records import CandidateRow, LawRow
 from stiction.errors import UnknownName
-from stiction.frozen import ByPath, Frozen
 from stiction.paper.result import Number, Result
 from stiction.plan.result import Plan
-from stiction.residual import effort_residual, free_run
+from stiction.residual.effort import effort_residual, free_run
 
 DT = 1e-3
 AGAIN = [copy.deepcopy, lambda item: pickle.loads(pickle.dumps(item))]

@@ -21,7 +21,7 @@ pub const DERIVATIVES: u64 = 5;
 /// of the dearest plants (a servo on elasto_plastic with an effect: 45 ns).
 const FIRST: f64 = 8e7;
 /// The same of a call of segments, whose evaluations may each take as long as several such steps.
-const FIRST_OF_SEGMENTS: f64 = 4.8e7;
+const FIRST_OF_SEGMENTS: f64 = 3.6e7;
 /// As much more for each sample: a thousand steps.
 const OF_A_SAMPLE: f64 = 8e3;
 /// The same for each row of segments, which are few and long.

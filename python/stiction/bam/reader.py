@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from .. import given
+from .._support import given
+from .._support.given import number
+from .._support.keys import choice
+from .._support.wording import commas
 from ..errors import InputError
-from ..keys import choice
-from ..parameter import number
-from ..wording import commas
 from .format import ACTUATORS, BESIDE, GOAL, MODELS, RELEASE, Actuator, Searched, search_space
 
 if TYPE_CHECKING:

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .. import steady
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..export.joint import WORTH_SAYING, beside, speeds_up_to
-from ..trajectory import FloatArray
+from ..plant import steady
+from ..plant.joint import WORTH_SAYING, beside, speeds_up_to
 from .format import ACTUATORS, GOAL, LOAD
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from ..stated import Effect
+    from ..plant.stated import Effect
 
 __all__ = ["BamNumbers", "numbers_of"]
 

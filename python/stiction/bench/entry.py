@@ -5,12 +5,12 @@ from __future__ import annotations
 import logging
 from pathlib import Path
 
-from .. import given
 from .. import session as sessions
-from ..atomic_files import write_text
+from .._support import given
+from .._support.atomic_files import write_text
+from .._support.progress import phase, steps
 from ..diagnosis import diagnose
 from ..errors import InputError
-from ..progress import phase, steps
 from .read import manifest_of
 
 __all__ = ["run"]

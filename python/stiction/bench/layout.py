@@ -11,13 +11,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from .. import __version__, given
-from ..atomic_files import new_folder, subfolder, write_text
+from .. import __version__
+from .._support import given
+from .._support.atomic_files import new_folder, subfolder, write_text
+from .._support.json_text import json_of
+from .._support.progress import phase, steps
+from .._support.wording import commas
 from ..catalogue import effects, laws
 from ..errors import InputError
-from ..json_text import json_of
-from ..progress import phase, steps
-from ..wording import commas
 from .deal import CASES, SHORTEST, Dealt, deal
 from .format import BENCH_FORMAT, SCHEMA_TEXT
 from .ordinary.draw import OWN_LAWS, SECONDS, Ordinary, ordinary

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from .._support.given import brief, regular
+from .._support.wording import commas, did_you_mean
 from ..errors import InputError
-from ..given import brief, regular
-from ..wording import commas, did_you_mean
 from .format import BENCH_FORMAT, SCHEMA, VERDICTS
 
 __all__ = ["MANIFEST", "TRUTH", "Answer", "Named", "answer_file", "json_file", "manifest_of"]

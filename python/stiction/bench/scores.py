@@ -11,11 +11,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
-from .. import given
+from .._support import given
+from .._support.json_text import json_of
+from .._support.wording import plural
 from ..catalogue import effects
 from ..errors import InputError
-from ..json_text import json_of
-from ..wording import plural
 from .layout import seal_of
 from .rates import Calibration, Rate, calibration, rate
 from .read import TRUTH, Answer, answer_file, json_file, manifest_of

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from .._support.json_text import json_of
 from ..errors import InputError
-from ..json_text import json_of
 from .interrupt import defer_interrupt
 
 __all__ = ["answer", "discard_stdout", "folder", "json_of", "print_on_failure", "protect_writes"]

@@ -8,9 +8,9 @@ from typing import Annotated
 import cyclopts
 from cyclopts import Parameter
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
+from .._support.wording import plural
 from ..errors import InputError
-from ..wording import plural
 from .answer import answer, folder, print_on_failure, protect_writes
 from .app import VERBS
 from .given import Quiet, Whole, separate

@@ -9,11 +9,11 @@ from typing import Annotated, Any, TypeVar
 from cyclopts import Parameter
 
 from .. import catalogue
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
+from .._support.json_text import infinities_as_words
+from .._support.wording import commas, did_you_mean
 from ..catalogue import EffectRecord, LawRecord, ParameterRecord
 from ..errors import InputError
-from ..json_text import infinities_as_words
-from ..wording import commas, did_you_mean
 from .answer import answer, folder, json_of, protect_writes
 
 __all__ = ["effects", "laws"]

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
 from ..compare.defaults import DRAWS, PASSIVE_STEPS
 from .answer import answer, folder, json_of, protect_writes
 from .given import Quiet, Whole, separate

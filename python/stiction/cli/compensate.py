@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import Parameter
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
+from .._support.json_text import json_of
+from .._support.progress import phase
+from .._support.wording import commas
 from ..errors import InputError
-from ..json_text import json_of
-from ..progress import phase
-from ..wording import commas
 from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet
 from .progress import progress
@@ -64,9 +64,9 @@ def compensate(
     import numpy as np
 
     from .. import session as sessions
-    from ..begins import load_begins
     from ..compensation import compensate as simulated
     from ..plant import Plant
+    from ..plant.begins import load_begins
     from ..recording.names import names_of
     from .recording_run import begin_for, stems_of
 

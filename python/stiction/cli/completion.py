@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
 from .answer import answer, folder, protect_writes
 
 __all__ = ["completion"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from ..wording import plural
+from .._support.wording import plural
 from .answer import answer, folder, print_on_failure, protect_writes
 from .diagnose import summarise
 from .given import Quiet

@@ -90,7 +90,7 @@ def diagnose(
         Print JSON.
     """
     from ..diagnosis import diagnose as run
-    from ..diagnosis.added import add as added
+    from ..diagnosis.findings.added import add as added
     from ..robot.session import robot_of
     from ..session import load_beside
     from .drafts import Stated, is_data, open_session

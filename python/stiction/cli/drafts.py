@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Final
 from zlib import crc32
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
+from .._support.wording import commas
 from ..drafting import FILES, assumptions, draft
 from ..errors import InputError
 from ..plant import Plant
 from ..recording.formats import FORMATS
 from ..session import Session
-from ..wording import commas
 from .answer import folder, protect_writes
 from .columns import read_columns
 from .sessions import load_session

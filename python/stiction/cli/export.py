@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from .._support.progress import phase
+from .._support.wording import commas
 from ..errors import InputError
-from ..progress import phase
-from ..wording import commas
 from .answer import answer, folder, protect_writes
 from .given import Quiet
 from .progress import progress

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
 from ..errors import InputError
 from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet
@@ -115,8 +115,8 @@ def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: boo
 
 def _told(at: Opened, result: FitResult, name: str, *, as_json: bool) -> None:
     """Write plant, numbers and page, and say what was fitted."""
-    from ..begins import FILE as BEGINS
-    from ..begins import save_begins
+    from ..plant.begins import FILE as BEGINS
+    from ..plant.begins import save_begins
     from ..report.fit_page import fit_page
     from .sessions import repairs_of
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..atomic_files import create_text
+from .._support.atomic_files import create_text
 from .answer import answer, folder, protect_writes
 
 __all__ = ["import_"]
@@ -42,9 +42,9 @@ def import_(
     json
         Print JSON.
     """
+    from .._support.given import vacant
     from ..bam import read_bam
-    from ..given import vacant
-    from ..plant_file import render
+    from ..plant.plant_file import render
 
     vacant(out, (_FILE,), "another folder with --out")
     found = read_bam(file, kp=kp, vin=vin)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from ..atomic_files import create_text
+from .._support.atomic_files import create_text
+from .._support.wording import commas, plural
 from ..errors import InputError
-from ..wording import commas, plural
 from .answer import answer, folder, protect_writes
 from .given import Quiet
 from .progress import progress
@@ -55,8 +55,8 @@ def init(
         Print JSON.
     """
     from .. import session as sessions
+    from .._support.given import vacant
     from ..drafting import FILES, draft
-    from ..given import vacant
     from .robot_draft import draft_robot
 
     if data.suffix.casefold() == ".urdf":

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import Parameter
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
+from .._support.json_text import json_of
 from ..errors import InputError
-from ..json_text import json_of
 from .answer import answer, folder, print_on_failure, protect_writes
 from .given import Quiet
 from .interrupt import answer_on_interrupt, defer_interrupt
@@ -100,7 +100,7 @@ def _lines(each: Entry) -> list[str]:
 def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool, quiet: bool) -> None:
     from .. import session as sessions
     from ..library import compare
-    from ..plant_file import read_toml
+    from ..plant.plant_file import read_toml
     from .sessions import name_file_in_errors
 
     with progress(quiet):

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
+from .._support.progress import phase
 from ..paper import (
     ILLUSTRATIVE_RIG,
     Result,
@@ -29,7 +30,6 @@ from ..paper import (
 )
 from ..paper.figures import static_comparison
 from ..plot import save_or_say
-from ..progress import phase
 from .answer import folder, json_of, protect_writes
 
 if TYPE_CHECKING:

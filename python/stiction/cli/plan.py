@@ -54,7 +54,7 @@ def plan(
     json
         Print JSON.
     """
-    from ..given import vacant
+    from .._support.given import vacant
     from ..plan import plan as run
     from ..plan.result import FILLED_IN
     from ..plant import Plant

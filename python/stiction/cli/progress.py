@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Final, TextIO
 
-from ..progress import Progress, watch
+from .._support.progress import Progress, watch
 
 __all__ = ["progress"]
 

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import closed_loop, residual
-from ..begins import FILE, Begin, begin_of
+from .. import closed_loop
 from ..errors import InputError
 from ..plant import Plant
+from ..plant.begins import FILE, Begin, begin_of
 from ..plot import save_or_say
 from ..recording import Recording
 from ..recording.checks import check, impulse_checks
 from ..recording.names import names_of
+from ..residual import effort as residual
 from .trajectory_csv import save_trajectory
 
 if TYPE_CHECKING:

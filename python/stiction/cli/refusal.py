@@ -8,7 +8,7 @@ from typing import Literal, get_args, get_origin
 import cyclopts
 from cyclopts import exceptions
 
-from ..wording import commas, did_you_mean
+from .._support.wording import commas, did_you_mean
 
 __all__ = ["refusal"]
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from .._support.given import vacant
 from ..errors import InputError
-from ..given import vacant
 from ..robot.robot import Robot
 from ..robot.session import load_session
 from .answer import answer, folder, print_on_failure, protect_writes

@@ -11,12 +11,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..atomic_files import create_text
+from .._support.atomic_files import create_text
+from .._support.given import vacant
+from .._support.progress import phase
+from .._support.wording import commas, plural
 from ..drafting.tables import as_in_file, name_tables, read
 from ..drafting.text import column_value, comment, kinds_of, printable, toml_string
 from ..errors import InputError
-from ..given import vacant
-from ..progress import phase
 from ..recording import Columns, Table
 from ..recording.columns import Column
 from ..recording.guess import ColumnGuess, Guess, guess
@@ -25,7 +26,6 @@ from ..recording.recording import recording_of
 from ..robot import Joint, Robot, RobotSession, Run
 from ..robot.description import read_urdf
 from ..robot.extended import relative
-from ..wording import commas, plural
 from .answer import answer, folder, protect_writes
 from .progress import progress
 

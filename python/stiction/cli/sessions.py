@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from .. import session as sessions
+from .._support.file_kinds import kind_of, kind_of_table
 from ..errors import InputError
-from ..file_kinds import kind_of, kind_of_table
 from ..plant import Plant
-from ..plant_file import read_toml
+from ..plant.plant_file import read_toml
 from ..recording.names import names_of
 from ..session import Session
 

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from .._support.progress import phase, steps
 from ..errors import InputError
-from ..progress import phase, steps
 from .answer import answer, folder, protect_writes
 from .given import Quiet
 from .progress import progress
@@ -55,8 +55,8 @@ def simulate(
         Print JSON.
     """
     from .. import session
-    from ..begins import load_begins
     from ..plant import Plant
+    from ..plant.begins import load_begins
     from ..recording.names import names_of
     from .columns import read_columns
     from .recording_run import begin_for, run_recording, stems_of

@@ -7,11 +7,12 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.table_file import save_table
+from .._support.units import Motion
 from ..plant import Plant
 from ..recording import Recording
-from ..recording.units import Motion
-from ..table_file import save_table
-from ..trajectory import FloatArray, Trajectory
+from ..trajectory import Trajectory
 
 __all__ = ["save_trajectory"]
 

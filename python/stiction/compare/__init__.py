@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..lazy import lazy
+from .._support.lazy import lazy
 
 if TYPE_CHECKING:
     from .measured import Measured, Property

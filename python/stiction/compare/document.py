@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from .. import catalogue
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
 from ..errors import InputError
 from .figures import law_figures, name_of
 from .result import CONDITIONAL, YES, Comparison

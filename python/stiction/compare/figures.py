@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .. import catalogue
-from ..atomic_files import atomic_write
+from .._support.arrays import FloatArray
+from .._support.atomic_files import atomic_write
 from ..plot import ACCENT, FAINT, MEASURED, SIMULATED, SMALL, figure, legend
-from ..trajectory import FloatArray
 from .subject import Subject, variants
 
 if TYPE_CHECKING:

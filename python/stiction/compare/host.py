@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from .._native import FrictionModel
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["Host"]
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import given
-from ..parameter import number
+from .._support import given
+from .._support.given import number
 from .subject import Subject
 
 __all__ = ["Measured", "Property"]

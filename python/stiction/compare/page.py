@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .. import catalogue
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
 from .figures import law_figure
 from .result import Comparison
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from .._support.wording import commas, did_you_mean, plural
 from ..errors import UnknownName
-from ..wording import commas, did_you_mean, plural
 from .measured import Measured, Property
 
 __all__ = ["CONDITIONAL", "NO", "UNDEFINED", "YES", "Cell", "Comparison", "Row", "verdict_of"]

@@ -7,12 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from .. import catalogue
+from .._support.given import brief, names, whole
+from .._support.progress import phase
+from .._support.progress import steps as each_step
+from .._support.wording import commas, did_you_mean
 from ..catalogue import LawRecord
 from ..errors import InputError
-from ..given import brief, names, whole
-from ..progress import phase
-from ..progress import steps as each_step
-from ..wording import commas, did_you_mean
 from .cost import BESIDE, costs
 from .defaults import DRAWS, PASSIVE_STEPS
 from .draws import draws as draw

@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 
 from .._native import FrictionModel
+from .._support.arrays import FloatArray
 from ..catalogue import LawRecord
 from ..errors import InputError
-from ..trajectory import FloatArray
 from .host import Host
 
 __all__ = ["RIGID_SPAN", "SPEEDS", "Scale", "Subject", "variants"]

@@ -15,10 +15,10 @@ from typing import Final
 import numpy as np
 
 from .. import session as sessions
-from ..atomic_files import create_text, subfolder
+from .._support.atomic_files import create_text, subfolder
+from .._support.given import path as file_path
+from .._support.given import vacant
 from ..errors import InputError
-from ..given import path as file_path
-from ..given import vacant
 from ..session import Session
 
 __all__ = ["copy", "hidden", "load"]

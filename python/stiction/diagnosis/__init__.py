@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..lazy import lazy
+from .._support.lazy import lazy
 from .defaults import ALPHA, SMALLEST, SURROGATES
 
 if TYPE_CHECKING:
+    from .findings.result import Diagnosis
     from .pipeline import diagnose
-    from .result import Diagnosis
 
 __all__ = ["ALPHA", "SMALLEST", "SURROGATES", "Diagnosis", "diagnose"]
 
@@ -17,7 +17,7 @@ __getattr__, __dir__ = lazy(
     __name__,
     {
         "ALPHA": "defaults",
-        "Diagnosis": "result",
+        "Diagnosis": "findings.result",
         "SMALLEST": "defaults",
         "SURROGATES": "defaults",
         "diagnose": "pipeline",

@@ -5,16 +5,16 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 
+from .._support.progress import phase
 from ..errors import InputError
-from ..progress import phase
-from .base import fit_baseline, fit_baseline_over_windows
-from .block_gains import heldout_gain
-from .bursts import recurs
-from .conclude import TOLD_BY, Conclusion, surrogates_of
-from .evidence import Evidence
-from .model import Known, Model, fit_model
+from .adequacy.bursts import recurs
+from .data.evidence import Evidence
+from .findings.conclude import TOLD_BY, Conclusion, surrogates_of
+from .findings.verdict import all_blind
+from .screening.base import fit_baseline, fit_baseline_over_windows
+from .screening.block_gains import heldout_gain
+from .screening.model import Known, Model, fit_model
 from .searched import Asked, Searched, replay_base, search_again
-from .verdict import all_blind
 
 __all__ = ["look_otherwise"]
 

@@ -10,13 +10,17 @@ from typing import Any, Final
 
 import numpy as np
 
-from .. import __version__, given
+from .. import __version__
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.given import instance, share, whole
+from .._support.keywords import explain_keywords
+from .._support.products import on_one_thread
+from .._support.progress import phase
+from .._support.wording import plural
+from .._support.workers import with_workers
 from ..errors import InputError, NotEnoughData
-from ..given import instance, share, whole
-from ..keywords import explain_keywords
 from ..plant import Plant
-from ..products import on_one_thread
-from ..progress import phase
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
 from ..recording.names import names_of
@@ -24,30 +28,27 @@ from ..recording.recording import recordings_of
 from ..recording.session_clock import subset
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
-from ..trajectory import FloatArray
-from ..wording import plural
-from ..workers import with_workers
-from .advice import advise
-from .base import (
+from .data.evidence import Evidence
+from .data.noise import Noise
+from .defaults import ALPHA, SMALLEST, SURROGATES
+from .findings.advice import advise
+from .findings.conclude import Conclusion, base_alone
+from .findings.result import Diagnosis
+from .findings.verdict import all_blind
+from .otherwise import look_otherwise
+from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
+from .screening.base import (
     fit_baseline,
     fit_joint_baseline,
     fit_simulated_baseline,
     fit_wider_baseline,
 )
-from .candidates import excluded_names
-from .conclude import Conclusion, base_alone
-from .defaults import ALPHA, SMALLEST, SURROGATES
-from .evidence import Evidence
-from .laws import law_names
-from .model import Known, Model
-from .noise import Noise
-from .otherwise import look_otherwise
-from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
-from .result import Diagnosis
+from .screening.candidates import excluded_names
+from .screening.model import Known, Model
 from .searched import Asked, Searched, replay_base, search_again
-from .seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
-from .selection import Search
-from .verdict import all_blind
+from .selection.laws import law_names
+from .selection.search import Search
+from .selection.seconds import acts_for_seconds, holds_more, tried_names, with_rows_of
 
 __all__ = ["diagnose"]
 

@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
+from .._support.progress import phase
 from ..plant import Plant
-from ..progress import phase
-from .conclude import MESSAGE, Conclusion
-from .laws import HOPELESS, THE_LAW, better_laws, rivals_of
-from .result import Diagnosis, LawRow, Unexplained
-from .selection import Search
+from .findings.conclude import MESSAGE, Conclusion
+from .findings.result import Diagnosis
+from .records import LawRow, Unexplained
+from .selection.laws import HOPELESS, THE_LAW, better_laws, rivals_of
+from .selection.search import Search
 
 __all__ = ["diagnose_again_at_the_end", "diagnose_again_early", "is_outdone"]
 

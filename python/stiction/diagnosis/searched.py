@@ -7,16 +7,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
+from .._support.arrays import FloatArray
+from .._support.progress import phase
 from ..fitting.forms import residual_sentence
-from ..progress import phase
-from ..trajectory import FloatArray
-from .conclude import surrogates_of
-from .evidence import Evidence
-from .model import Known, Model
-from .noise import Noise
-from .result import Diagnosis
-from .rounds import search
-from .selection import Search
+from .data.evidence import Evidence
+from .data.noise import Noise
+from .findings.conclude import surrogates_of
+from .findings.result import Diagnosis
+from .screening.model import Known, Model
+from .selection.rounds import search
+from .selection.search import Search
 
 __all__ = ["Asked", "Searched", "replay_base", "search_again"]
 

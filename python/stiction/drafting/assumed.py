@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from .._support.wording import plural
 from ..plant import Plant
 from ..session import Session
-from ..wording import plural
 from .draft import Draft
 from .text import GAIN_UNIT
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .._support.progress import phase
 from ..errors import InputError
-from ..progress import phase
 from ..recording import Columns, Table
 from ..recording.guess import Guess, guess, overrule
 from .tables import as_in_file, name_tables, one_joint, read
@@ -132,8 +132,8 @@ def draft(
 
 
 def _check_law(law: str) -> None:
+    from .._support.wording import commas, did_you_mean
     from ..catalogue import laws
-    from ..wording import commas, did_you_mean
 
     names = [record.name for record in laws()]
     if law not in names:

@@ -9,8 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from .._support.progress import phase, steps
+from .._support.wording import commas, plural
 from ..errors import InputError
-from ..progress import phase, steps
 from ..recording import Table, read_table
 from ..recording.columns import default_name
 from ..recording.formats import FORMATS
@@ -18,7 +19,6 @@ from ..recording.guess import Guess
 from ..recording.joints import MOST, joints_of
 from ..recording.repair import FEWEST_ROWS
 from ..recording.signals import read_signals, runs_of_signals
-from ..wording import commas, plural
 
 __all__ = ["as_in_file", "name_tables", "one_joint", "read", "recordings_in"]
 

@@ -11,11 +11,11 @@ from itertools import takewhile
 from pathlib import Path
 from textwrap import wrap
 
+from .._support.units import SI_UNIT, find_unit
+from .._support.wording import commas
 from ..errors import InputError
 from ..recording.columns import CANONICAL
 from ..recording.guess import ColumnGuess, Guess
-from ..recording.units import SI_UNIT, find_unit
-from ..wording import commas
 
 __all__ = [
     "GAIN_UNIT",

@@ -11,7 +11,7 @@ from .fragments import Fragments, names_of
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from ..stated import Effect
+    from ..plant.stated import Effect
 
 __all__ = ["ContactSource", "collapse_blank_lines", "numbers_of", "plant_numbers", "prologue"]
 

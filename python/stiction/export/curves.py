@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .. import steady
-from ..trajectory import FloatArray
-from .joint import beside, speeds_up_to
+from .._support.arrays import FloatArray
+from ..plant import steady
+from ..plant.joint import beside, speeds_up_to
 from .points import few_points, lines_off
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from ..stated import Effect
+    from ..plant.stated import Effect
 
 __all__ = ["Curves"]
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
 from ..fitting import fit
 from ..fitting.forms import HORIZONS_S, KERNELS, Through, as_session, can_be_shot, forms_of
@@ -21,14 +22,13 @@ from ..recording.recording import recordings_of
 from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
-from ..trajectory import FloatArray
 from .registry import targets
 from .runs import EffortRun, MotionRun, Windows
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from ..shooting import ShootingForm
-    from ..weak_form import Start, WeakForm
+    from ..residual.shooting import ShootingForm
+    from ..residual.weak_form import Start, WeakForm
     from .made import Export
 
 __all__ = ["Bench", "Fidelity", "Kept"]

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from ..plant.joint import beside
 from .contact_source import ContactSource, collapse_blank_lines, plant_numbers, prologue
 from .curves import Curves
 from .fragments import Fragments, names_of
-from .joint import beside
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from ..stated import Effect
+    from ..plant.stated import Effect
 
 __all__ = ["Firmware"]
 

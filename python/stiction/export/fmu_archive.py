@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
-from ..atomic_files import write_text
+from .._support.atomic_files import write_text
 from .fmi_description import IDENTIFIER
 
 __all__ = ["Binary", "archive", "binary_of", "compiler"]

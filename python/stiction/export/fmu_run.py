@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
 from .fmi_description import IDENTIFIER
 
 if TYPE_CHECKING:

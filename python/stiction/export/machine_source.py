@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from ..drive import servo_numbers
-from ..wording import commas
+from .._support.wording import commas
+from ..plant.drive import servo_numbers
 from .contact_source import ContactSource, collapse_blank_lines, plant_numbers, prologue
 from .fragments import Fragments
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import given
-from ..atomic_files import atomic_write, write_text
+from .._support import given
+from .._support.atomic_files import atomic_write, write_text
 from ..errors import InputError
 
 if TYPE_CHECKING:

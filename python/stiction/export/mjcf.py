@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from ..drive import servo_numbers
-from .joint import beside, joint_of, losses_of
+from ..plant.drive import servo_numbers
+from ..plant.joint import beside, joint_of, losses_of
 from .pd import PdServo
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from ..stated import Effect
+    from ..plant.stated import Effect
 
 __all__ = ["LATE", "STIFF", "Attributes", "Mjcf"]
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..drive import servo_numbers
+from ..plant.drive import servo_numbers
 
 if TYPE_CHECKING:
     from ..plant import Plant

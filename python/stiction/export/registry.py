@@ -9,7 +9,7 @@ from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from ..keys import choice
+from .._support.keys import choice
 from .made import Export
 from .speeds import greatest_speed
 from .targets import __name__ as _package

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._native import Motion
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from ..weak_form import Start
+    from ..residual.weak_form import Start
 
 __all__ = ["EffortRun", "MotionRun", "Windows", "dry_friction", "gravity_effort"]
 

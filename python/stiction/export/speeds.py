@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .._support.given import number
 from ..errors import InputError
-from ..parameter import number
 
 if TYPE_CHECKING:
     from ..plant import Plant

@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from ..errors import InputError
-from ..parameter import Parameter
 from ..plant import Plant
+from ..plant.parameter import Parameter
 from .forms import followable
 from .rows import Nuisances, Rows
 

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from .. import given
-from ..atomic_files import write_text
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.atomic_files import write_text
+from .._support.frozen import ByPath, freeze
+from .._support.json_text import json_of
+from .._support.keywords import explain_keywords
+from .._support.wording import commas, plural
 from ..catalogue import laws
 from ..errors import InputError
-from ..frozen import ByPath, freeze
-from ..json_text import json_of
-from ..keywords import explain_keywords
-from ..parameter import Parameter
 from ..plant import Plant
-from ..trajectory import FloatArray
-from ..wording import commas, plural
+from ..plant.parameter import Parameter
 from .levenberg import levenberg_marquardt
 from .result import FitParameter
 

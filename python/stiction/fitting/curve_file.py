@@ -8,14 +8,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.units import MOTION_OF_QUANTITY, SI_UNIT, Unit, find_unit, to_si
+from .._support.wording import commas
 from ..errors import InputError
 from ..recording import Columns, Table, read_table
 from ..recording.columns import Column
 from ..recording.guess.evidence import columns_of
 from ..recording.guess.kinds import kinds_of
-from ..recording.units import MOTION_OF_QUANTITY, SI_UNIT, Unit, find_unit, to_si
-from ..trajectory import FloatArray
-from ..wording import commas
 from .curve import CurveFit, fit_curve
 
 __all__ = ["curve_table", "fit_curve_file"]

@@ -10,11 +10,11 @@ from typing import Final, Generic, Protocol, TypeVar
 
 import numpy as np
 
+from .._support.progress import phase
 from ..errors import InputError
 from ..plant import Plant
-from ..progress import phase
 from ..recording.names import names_of
-from ..weak_form import WeakForm
+from ..residual.weak_form import WeakForm
 from .forms import (
     LEAST_LEFT,
     Through,

@@ -8,16 +8,16 @@ from typing import Final
 
 import numpy as np
 
-from ..finite import finite
-from ..loop_form import LoopForm
-from ..motion import SUPPORTS_S, Kernel, noise_of
-from ..parameter import Parameter
+from .._support.arrays import FloatArray
 from ..plant import Plant
+from ..plant.parameter import Parameter
 from ..recording import Recording
+from ..recording.motion import SUPPORTS_S, Kernel, noise_of
 from ..recording.session_clock import ages_of, starts_of
-from ..shooting import MOST_OVERLAP, ShootingForm
-from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from ..residual.finite import finite
+from ..residual.loop_form import LoopForm
+from ..residual.shooting import MOST_OVERLAP, ShootingForm
+from ..residual.weak_form import WeakForm
 from .readings import residual_of_readings
 from .rows import Nuisances, Rows
 

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["FIRST_DAMPING", "Minimum", "escape", "levenberg_marquardt"]
 

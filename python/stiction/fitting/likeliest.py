@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TypeVar
 
+from .._support.workers import side_by_side
 from ..plant import Plant
-from ..workers import side_by_side
 
 __all__ = ["likeliest"]
 

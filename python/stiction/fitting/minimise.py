@@ -11,11 +11,11 @@ from typing import Final
 
 import numpy as np
 
-from ..finite import finite
+from .._support.arrays import FloatArray
+from .._support.progress import steps
+from .._support.workers import side_by_side
 from ..plant import Plant
-from ..progress import steps
-from ..trajectory import FloatArray
-from ..workers import side_by_side
+from ..residual.finite import finite
 from .levenberg import FIRST_DAMPING, Minimum, escape, levenberg_marquardt
 from .rows import Nuisances, Rows, Start, add_starts, numbers, start_quantities, timing_bound
 from .slopes import places_of, slopes

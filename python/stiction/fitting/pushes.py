@@ -8,11 +8,11 @@ from typing import Final
 
 import numpy as np
 
-from ..motion import GAUSSIAN
+from .._support.arrays import FloatArray
 from ..plant import Plant
 from ..recording import Check, Part, Recording
-from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from ..recording.motion import GAUSSIAN
+from ..residual.weak_form import WeakForm
 from .rows import Mask, Push, rows_of
 
 __all__ = ["Watch", "omission_words", "push_checks"]

@@ -8,12 +8,12 @@ from typing import Final
 
 import numpy as np
 
-from ..accompanied import nearby_motion
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..motion import GAUSSIAN, smooth
 from ..plant import Plant
-from ..trajectory import FloatArray
-from ..weak_form import Start, WeakForm
+from ..recording.motion import GAUSSIAN, smooth
+from ..residual.accompanied import nearby_motion
+from ..residual.weak_form import Start, WeakForm
 
 __all__ = [
     "Residual",

@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..plant import Plant
-from ..trajectory import FloatArray
 from .minimise import Solution, alone, minimise, with_interruption
 from .rows import TURNS, Nuisances, Rows, Start, add_starts, start_quantities
 

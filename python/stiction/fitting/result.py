@@ -9,13 +9,13 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import given
-from ..atomic_files import write_text
-from ..compared import comparison_of
-from ..frozen import ByPath, Frozen, freeze
-from ..json_text import json_of
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.atomic_files import write_text
+from .._support.frozen import ByPath, Frozen, freeze
+from .._support.json_text import json_of
 from ..plant import Plant
-from ..trajectory import FloatArray
+from ..residual.compared import comparison_of
 from .waves import amplitude_of, parts_of, phase_of, waves_of
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class FitResult:
         Friction state at the first row of each recording that tells of it.
     begins : Mapping of str to Mapping
         Where each recording begins: ``clock_s``, ``path``, and the friction state where one is
-        known, held-out recordings too (see ``stiction.begins``).
+        known, held-out recordings too (see ``stiction.plant.begins``).
     assumed : tuple of str
         What the plant leaves open and every value hangs on, in sentences.
     stiffness : float or None

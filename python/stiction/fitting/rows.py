@@ -9,13 +9,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..catalogue import ParameterRecord, effects
 from ..errors import NotEnoughData
 from ..plant import Plant
 from ..recording import Part, Recording
 from ..recording.checks.clock import LOST, usual_steps
-from ..trajectory import FloatArray
-from ..weak_form import WeakForm
+from ..residual.weak_form import WeakForm
 from .statistics import CORRELATED_S
 
 __all__ = [

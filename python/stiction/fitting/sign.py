@@ -6,9 +6,9 @@ import logging
 from collections.abc import Callable, Sequence
 from typing import Final
 
+from .._support.progress import phase
 from ..errors import InputError
 from ..plant import Plant
-from ..progress import phase
 from ..recording import Recording
 
 __all__ = ["LEFT_WHERE_WRONG", "sign_error"]

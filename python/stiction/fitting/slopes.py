@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..finite import finite
+from .._support.arrays import FloatArray
 from ..plant import Plant
-from ..trajectory import FloatArray
+from ..residual.finite import finite
 from .rows import Nuisances, Rows
 
 __all__ = ["places_of", "slopes"]

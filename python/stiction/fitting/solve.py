@@ -9,15 +9,18 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..begins import begins
+from .._support.arrays import FloatArray
+from .._support.given import instance, whole
+from .._support.keywords import explain_keywords
+from .._support.products import on_one_thread
+from .._support.progress import phase, steps
+from .._support.wording import plural
+from .._support.workers import with_workers
 from ..catalogue import effects
-from ..drive import assumed_gain
 from ..errors import InputError
-from ..given import instance, whole
-from ..keywords import explain_keywords
 from ..plant import Plant
-from ..products import on_one_thread
-from ..progress import phase, steps
+from ..plant.begins import begins
+from ..plant.drive import assumed_gain
 from ..recording import Recording
 from ..recording.blocks import FEWEST_BLOCKS, SHORT_SHARE, Part
 from ..recording.checks import without_failures
@@ -27,9 +30,6 @@ from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
-from ..trajectory import FloatArray
-from ..wording import plural
-from ..workers import with_workers
 from .clock import bounded_plants, follows
 from .first_pass import first_pass, fit_from_data, remaining_share
 from .forms import KERNELS, Through, as_session, forms_of, restore_bounds

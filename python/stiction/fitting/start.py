@@ -10,10 +10,10 @@ import numpy as np
 
 from ..catalogue import effects
 from ..errors import NotEnoughData
-from ..parameter import Parameter
 from ..plant import Plant
-from ..stated import Effect
-from ..weak_form import WeakForm
+from ..plant.parameter import Parameter
+from ..plant.stated import Effect
+from ..residual.weak_form import WeakForm
 from .likeliest import likeliest
 from .rows import start_guess
 from .variables import records

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .quantiles import f_quantile, t_quantile
 
 __all__ = [

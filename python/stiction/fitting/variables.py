@@ -9,9 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..catalogue import ParameterRecord, effects
 from ..plant import Plant
-from ..trajectory import FloatArray
 
 __all__ = [
     "RATIOS",

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 if TYPE_CHECKING:
     from .result import FitParameter

@@ -10,22 +10,22 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from .. import given
-from ..begins import begin_of
-from ..compared import comparison_of
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.json_text import json_of
+from .._support.wording import commas, plural
 from ..errors import InputError
 from ..fitting import FitParameter, FitResult, fit
 from ..fitting.start import free_paths
-from ..json_text import json_of
-from ..parameter import Parameter
 from ..plant import Plant
+from ..plant.begins import begin_of
+from ..plant.parameter import Parameter
 from ..recording import Recording
 from ..recording.names import names_of
 from ..recording.recording import recordings_of
-from ..residual import EffortResidual, effort_residual, free_run
+from ..residual.compared import comparison_of
+from ..residual.effort import EffortResidual, effort_residual, free_run
 from ..session import Session
-from ..trajectory import FloatArray
-from ..wording import commas, plural
 from .entry_file import Entry, EntryNumber, span
 
 __all__ = ["UnitComparison", "UnitNumber", "compare", "plant_like"]

@@ -11,14 +11,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from .. import given
+from .._support import given
+from .._support.frozen import Frozen, freeze
+from .._support.given import number
+from .._support.keys import check_keys, choice
+from .._support.wording import commas, did_you_mean, plural
 from ..errors import InputError
-from ..frozen import Frozen, freeze
-from ..keys import check_keys, choice
-from ..parameter import number
 from ..plant import Plant
-from ..plant_file import read_toml, section
-from ..wording import commas, did_you_mean, plural
+from ..plant.plant_file import read_toml, section
 
 __all__ = ["Entry", "EntryNumber", "entries", "entry", "read_entry"]
 

@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
 from .rig import RigLike, build_motor
 
 __all__ = ["STATES", "Bench", "above_0", "fits", "read_encoder", "samples_of", "whole_samples"]

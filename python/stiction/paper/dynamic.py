@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arguments import check_arguments
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
+from .arguments import check_arguments
 from .bench import Bench, fits, whole_samples
 from .result import Known, MotionResult, Number, arcsec, enumerate_values
 from .rig import ARC_SECOND, RigLike, is_illustrative

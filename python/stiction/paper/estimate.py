@@ -15,12 +15,11 @@ from typing import Final
 import numpy as np
 
 from .._native import FrictionModel
+from .._support.arrays import FloatArray
+from .._support.frozen import Frozen, freeze
+from .._support.given import mapping, names, number
 from ..errors import InputError
-from ..frozen import Frozen, freeze
-from ..given import mapping, names
 from ..motor import Motor
-from ..parameter import number
-from ..trajectory import FloatArray
 from .cautions import assumptions_of, stairs
 from .graphical import Recorded, Steps, branch_curve, read_off
 from .readings import Evidence, count_of, evidence, noise_of

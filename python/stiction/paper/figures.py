@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
 from ..plot import (
     ACCENT,
@@ -24,7 +25,6 @@ from ..plot import (
     legend,
     thinned,
 )
-from ..trajectory import FloatArray
 from .dynamic import PulseTrains, RampAndCut, RampAndHold
 from .estimate import Estimate
 from .graphical import branch_curve

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["Recorded", "Steps", "branch_curve", "read_off"]
 

@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 
 from .._native import FrictionModel
-from ..arguments import check_arguments
+from .._support.arrays import FloatArray
 from ..errors import InputError
 from ..motor import Motor
-from ..trajectory import FloatArray
+from .arguments import check_arguments
 from .result import Number, Result, arcsec
 from .rig import ARC_SECOND, illustrative_motor
 from .stick_slip import SLIDING

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._native import FrictionModel
-from ..arguments import check_arguments
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
+from .arguments import check_arguments
 from .bench import above_0
 from .result import Number, Result
 from .rig import ARC_SECOND, RigLike, build_friction

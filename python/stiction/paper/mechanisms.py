@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import catalogue
 from .._native import FrictionModel
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .paths import ForcePath
 from .result import Number, Result, arcsec
 from .rig import ARC_SECOND

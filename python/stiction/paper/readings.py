@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["Evidence", "count_of", "evidence", "noise_of"]
 

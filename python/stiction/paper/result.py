@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..frozen import Frozen, freeze
-from ..trajectory import FloatArray
-from ..wording import commas, plural
+from .._support.arrays import FloatArray
+from .._support.frozen import Frozen, freeze
+from .._support.wording import commas, plural
 from .rig import ARC_SECOND
 
 if TYPE_CHECKING:

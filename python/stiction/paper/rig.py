@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from typing import Any, TypeAlias
 
 from .._native import FrictionModel
+from .._support.frozen import Frozen
 from ..errors import InputError
-from ..frozen import Frozen
 from ..motor import Motor
 
 __all__ = [

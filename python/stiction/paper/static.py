@@ -19,9 +19,9 @@ import numpy as np
 
 from .. import catalogue
 from .._native import FrictionModel
-from ..arguments import check_arguments
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
+from .arguments import check_arguments
 from .bench import fits
 from .dynamic import STEP
 from .paths import FORCE_STEP, RAMP_RATE, ForcePath, motor_path

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import check_arguments
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
+from .arguments import check_arguments
 from .bench import above_0, read_encoder, samples_of
 from .result import MotionResult, Number
 from .rig import RigLike, build_motor

@@ -9,8 +9,8 @@ from typing import Final, Literal
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..plant import Plant
-from ..trajectory import FloatArray
 from .limits import Sizes
 from .moves import Motion, cosine_taper
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from ..atomic_files import subfolder, write_text
+from .._support.atomic_files import subfolder, write_text
 from ..errors import InputError, UnknownName
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def write_plan(
         The folder cannot be written.
     """
     from .. import plot
-    from ..json_text import json_of
+    from .._support.json_text import json_of
 
     try:
         folder.mkdir(parents=True, exist_ok=True)

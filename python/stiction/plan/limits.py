@@ -8,11 +8,12 @@ from typing import Final
 
 import numpy as np
 
+from .._support.given import number
+from .._support.wording import commas
 from ..errors import InputError
-from ..parameter import Parameter, number
 from ..plant import Plant
-from ..presliding import presliding
-from ..wording import commas
+from ..plant.parameter import Parameter
+from ..plant.presliding import presliding
 
 __all__ = ["Limits", "Sizes", "sizes_of", "with_inertia"]
 

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["LONGEST_S", "MOST_SAMPLES", "Motion", "TooLongError", "cosine_taper"]
 

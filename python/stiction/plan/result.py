@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from .. import given
-from ..atomic_files import atomic_write
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.atomic_files import atomic_write
+from .._support.wording import plural
 from ..plant import Plant
 from ..recording.recording import SPLIT_ROLES
-from ..trajectory import FloatArray
-from ..wording import plural
 from .files import find_signal, write_plan
 
 if TYPE_CHECKING:

@@ -9,15 +9,14 @@ from typing import Final
 import numpy as np
 
 from .._native import Motion
-from ..drive import GOALS
+from .._support.arrays import FloatArray
+from .._support.given import instance, names, number, whole
+from .._support.progress import phase
+from .._support.wording import commas, did_you_mean
 from ..errors import InputError
-from ..given import instance, names, whole
-from ..parameter import number
 from ..plant import Plant
-from ..progress import phase
+from ..plant.drive import GOALS
 from ..recording.recording import SPLIT_ROLES
-from ..trajectory import FloatArray
-from ..wording import commas, did_you_mean
 from .experiments import EXPERIMENTS, Experiment
 from .limits import Limits, Sizes, sizes_of, with_inertia
 from .moves import LONGEST_S, MOST_SAMPLES, TooLongError

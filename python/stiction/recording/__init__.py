@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .._support.units import UNITS, Unit
 from ..errors import InputError
 from .blocks import Part
 from .checks import Check, check
@@ -11,7 +12,6 @@ from .recording import SETTINGS, Recording
 from .repair import Repair
 from .split import Fold, Split
 from .table import Cell, Table
-from .units import UNITS, Unit
 
 __all__ = [
     "CANONICAL",

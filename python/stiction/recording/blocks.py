@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.given import number
 from ..errors import InputError, NotEnoughData
-from ..parameter import number
-from .units import FloatArray
 
 FEWEST_BLOCKS: Final = 3
 """One each to train, select and test."""

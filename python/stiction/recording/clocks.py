@@ -8,11 +8,11 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
 from .column_words import what_it_says
 from .columns import CANONICAL
 from .table import Table
-from .units import FloatArray
 
 __all__ = ["Aligned", "align", "on_main_clock", "time_of"]
 

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
+from .._support.units import UNITS, Motion, bracketed_unit, find_unit
 from ..errors import InputError
 from .columns import CANONICAL
-from .units import UNITS, Motion, bracketed_unit, find_unit
 
 Kind = str
 """A role; ``"drive"`` for what may be an input or a measured effort; ``"flag"`` and ``"index"`` for

@@ -11,11 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from .. import given as taken
+from .._support import given as taken
+from .._support.frozen import Frozen
+from .._support.units import find_unit
+from .._support.wording import did_you_mean
 from ..errors import InputError
-from ..frozen import Frozen
-from ..wording import did_you_mean
-from .units import find_unit
 
 ROLES: Final[dict[str, tuple[str, ...]]] = {
     "time": ("time",),

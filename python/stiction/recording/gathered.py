@@ -9,11 +9,11 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.wording import commas
 from ..errors import InputError
-from ..wording import commas
 from .expansion import Expansion
 from .table import Table
-from .units import FloatArray
 
 __all__ = ["Gathered", "damage_error", "missing_package"]
 

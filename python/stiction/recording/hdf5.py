@@ -12,11 +12,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.wording import printable
 from ..errors import InputError
-from ..wording import printable
 from .expansion import Expansion, most_bytes
 from .table import unfit, vector
-from .units import FloatArray
 
 _DEEPEST: Final = 64
 _WIDEST: Final = 64

@@ -13,13 +13,14 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.units import bracketed_unit
+from .._support.wording import commas, did_you_mean, plural
 from ..errors import InputError
-from ..wording import commas, did_you_mean, plural
 from .column_words import what_it_says
 from .columns import default_name
 from .guess.evidence import Column, columns_of, rate_of
 from .table import Table
-from .units import FloatArray, bracketed_unit
 
 __all__ = ["Joints", "joints_of"]
 

@@ -8,18 +8,11 @@ from typing import Final
 
 import numpy as np
 
-from ..errors import InputError
-from ..given import brief
-from ..wording import commas, plural
-from .clocks import align
-from .columns import CANONICAL, ROLES, Column, Columns, default_name
-from .repair import check_lengths
-from .table import Table
-from .turns import unwrap
-from .units import (
+from .._support.arrays import FloatArray
+from .._support.given import brief
+from .._support.units import (
     MOTION_OF_QUANTITY,
     SI_UNIT,
-    FloatArray,
     Motion,
     Unit,
     bracketed_unit,
@@ -29,6 +22,13 @@ from .units import (
     to_si,
     unit_names,
 )
+from .._support.wording import commas, plural
+from ..errors import InputError
+from .clocks import align
+from .columns import CANONICAL, ROLES, Column, Columns, default_name
+from .repair import check_lengths
+from .table import Table
+from .turns import unwrap
 
 PRESCRIBED: Final = "prescribed_motion"
 DRIVES: Final = (

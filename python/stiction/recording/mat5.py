@@ -17,11 +17,11 @@ from typing import IO, Final, Protocol
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.wording import printable
 from ..errors import InputError
-from ..wording import printable
 from .expansion import Expansion
 from .table import unfit
-from .units import FloatArray
 
 _HEADER: Final = 128
 _MATRIX, _PACKED = 14, 15

@@ -7,10 +7,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.given import brief, number
 from ..errors import InputError
-from ..given import brief
-from ..parameter import number
-from .units import FloatArray
 
 __all__ = ["part_of"]
 

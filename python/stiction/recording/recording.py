@@ -14,14 +14,15 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
+from .._support.frozen import Frozen
+from .._support.given import brief, instance, mapping, number, numbers, real, whole
+from .._support.given import path as file_path
+from .._support.keywords import explain_constructor
+from .._support.readers import FromFile
+from .._support.units import Motion
+from .._support.wording import did_you_mean
 from ..errors import InputError
-from ..frozen import Frozen
-from ..given import brief, instance, mapping, numbers, real, whole
-from ..given import path as file_path
-from ..keywords import explain_constructor
-from ..parameter import number
-from ..readers import FromFile
-from ..wording import did_you_mean
 from .columns import ROLES, Columns
 from .formats import read_table
 from .mapping import read_channels
@@ -30,7 +31,6 @@ from .rendering import as_html, as_text
 from .repair import FEWEST_ROWS, Place, Repair, check_lengths, mend
 from .signals import read_signals
 from .table import Table
-from .units import FloatArray, Motion
 
 SPLIT_ROLES: Final = ("train", "select", "test")
 """What a recording may be used for."""

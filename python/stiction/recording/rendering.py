@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..wording import plural
+from .._support.wording import plural
 
 if TYPE_CHECKING:
     from .recording import Recording

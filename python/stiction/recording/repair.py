@@ -15,9 +15,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
+from .._support.wording import plural
 from ..errors import InputError
-from ..wording import plural
-from .units import FloatArray
 
 BAD_SHARE: Final = 0.05
 """Repairs stay under this share of a channel's cells."""

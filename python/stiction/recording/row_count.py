@@ -13,8 +13,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.wording import plural
 from ..errors import InputError
-from ..wording import plural
 from .table import Table
 
 __all__ = ["complete"]

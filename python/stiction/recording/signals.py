@@ -10,8 +10,8 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, Final
 
+from .._support.wording import commas, plural
 from ..errors import InputError
-from ..wording import commas, plural
 from .clocks import time_of
 from .column_words import what_it_says
 from .columns import default_name

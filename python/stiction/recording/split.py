@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from .._support.wording import commas, plural
 from ..errors import InputError, NotEnoughData
-from ..wording import commas, plural
 from .blocks import Part, blocks, check_lengths_of
 from .names import names_of
 from .recording import SPLIT_ROLES, Recording

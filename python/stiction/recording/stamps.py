@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .table import Table
-from .units import FloatArray
 
 __all__ = ["one_clock"]
 

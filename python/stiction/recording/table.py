@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
+from .._support.given import instance, mapping, whole, word
+from .._support.units import bracketed_unit
+from .._support.wording import commas, did_you_mean, plural, printable
 from ..errors import InputError
-from ..given import instance, mapping, whole, word
-from ..wording import commas, did_you_mean, plural, printable
 from .text.lines import LineNumbers
-from .units import FloatArray, bracketed_unit
 
 # Of each column, this many cells that are not numbers are kept; one is enough for an error.
 CELLS_KEPT = 20

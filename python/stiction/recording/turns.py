@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from .units import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["unwrap"]
 

@@ -9,10 +9,10 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from .. import given
-from ..atomic_files import subfolder, write_text
-from ..begins import save_begins
-from ..best_effort import Failure, attempt
+from .._support import given
+from .._support.atomic_files import subfolder, write_text
+from .._support.best_effort import Failure, attempt
+from ..plant.begins import save_begins
 from .files import folder_error, make_folder, without_others
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import Final, Literal
 
 import numpy as np
 
-from ..trajectory import FloatArray
-from .numbers import tick, tick_of_ten
+from .._support.arrays import FloatArray
+from .._support.numbers import tick, tick_of_ten
 
 __all__ = ["Axis", "around"]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 from .axis import Axis
 
 __all__ = ["Area", "Bars", "Chart", "Line", "Mark", "Panel", "Span", "Words"]

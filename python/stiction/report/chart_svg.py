@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..plot import FAINT, INK, MEASURED, SMALL, TEXT
-from ..trajectory import FloatArray
 from .chart import Area, Bars, Chart, Line, Mark, Panel, Span, Words
 
 __all__ = ["text_width", "write_svg"]

@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Protocol
 
 from markupsafe import Markup
 
-from ..best_effort import Failure, attempt
-from ..compared import comparison_of
-from ..progress import phase, steps
+from .._support.best_effort import Failure, attempt
+from .._support.numbers import isolate, percent, plain
+from .._support.progress import phase, steps
+from .._support.scale import scale_of
+from ..residual.compared import comparison_of
 from . import figures, motion_figures
 from .chart_svg import write_svg
-from .numbers import isolate, percent, plain
-from .scale import scale_of
 from .svg import inline
 
 if TYPE_CHECKING:
-    from ..diagnosis.omnibus import View
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.adequacy.omnibus import View
+    from ..diagnosis.findings.result import Diagnosis
     from .chart import Chart
 
 __all__ = ["Drawing", "Drawings", "Order", "draw", "orders"]

@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..compared import comparison_of
-from ..diagnosis.pictures import ROLES
+from .._support.numbers import percent
+from .._support.scale import Scale, scale_for, scale_of
+from ..diagnosis.findings.pictures import ROLES
 from ..plot import thinned
-from .numbers import percent
+from ..residual.compared import comparison_of
 from .packing import Packed, pack
-from .scale import Scale, scale_for, scale_of
 from .titles import effect_title
 
 if TYPE_CHECKING:
-    from ..diagnosis.pictures import Trace
-    from ..diagnosis.result import Diagnosis
-    from ..trajectory import FloatArray
+    from .._support.arrays import FloatArray
+    from ..diagnosis.findings.pictures import Trace
+    from ..diagnosis.findings.result import Diagnosis
 
 __all__ = ["Explorer", "explorer"]
 

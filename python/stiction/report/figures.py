@@ -13,20 +13,21 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..compared import comparison_of
+from .._support.numbers import NO_BREAK, digits, percent
+from .._support.scale import Scale, loop_scale_of, prefix_for, scale_for, scale_of
 from ..errors import InputError
 from ..plot import ACCENT, FAINT, INK, MEASURED, SIMULATED, SMALL, TEXT
+from ..residual.compared import comparison_of
 from .axis import Axis, around
 from .chart import Area, Bars, Chart, Line, Mark, Panel, Span, Words
 from .chart_parts import INCH, extent, time_axis, trace_line, width_of
 from .labels import distinct_labels, shorten
-from .numbers import NO_BREAK, digits, percent
-from .scale import Scale, loop_scale_of, prefix_for, scale_for, scale_of
 
 if TYPE_CHECKING:
-    from ..diagnosis.omnibus import View
-    from ..diagnosis.pictures import Pictures
-    from ..diagnosis.result import Diagnosis, ModelSummary
+    from ..diagnosis.adequacy.omnibus import View
+    from ..diagnosis.findings.pictures import Pictures
+    from ..diagnosis.findings.result import Diagnosis
+    from ..diagnosis.records import ModelSummary
 
 __all__ = [
     "candidates",

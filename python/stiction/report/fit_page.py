@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from markupsafe import Markup, escape
 
-from ..begins import begin_of
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
+from .._support.numbers import digits
+from ..plant.begins import begin_of
 from ..recording.names import names_of
-from ..residual import effort_residual, free_run
-from .numbers import digits
+from ..residual.effort import effort_residual, free_run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
+from .._support.numbers import digits
+from .._support.scale import Scale, scale_for
 from ..errors import InputError
 from ..plot import ACCENT, MEASURED, SIMULATED, SMALL, TEXT
 from .axis import Axis, around
 from .chart import Chart, Line, Panel
 from .chart_parts import extent, time_axis, trace_line, width_of
-from .numbers import digits
-from .scale import Scale, scale_for
 
 if TYPE_CHECKING:
-    from ..diagnosis.pictures import Trace
-    from ..diagnosis.result import Diagnosis
+    from .._support.arrays import FloatArray
+    from ..diagnosis.findings.pictures import Trace
+    from ..diagnosis.findings.result import Diagnosis
     from ..plant import Plant
-    from ..trajectory import FloatArray
 
 FloatArrays: TypeAlias = "tuple[FloatArray, FloatArray]"
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["Packed", "pack"]
 

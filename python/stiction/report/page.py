@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup, escape
 
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
 from .explorer import explorer
 from .sections import BUILDERS, Builder, name_of
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.findings.result import Diagnosis
     from .drawings import Drawings
 
 __all__ = ["render"]

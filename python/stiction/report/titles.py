@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..compared import comparison_of
-from ..diagnosis.presentation import PRESENTATIONS
-from ..diagnosis.words import join_words
-from .numbers import NO_BREAK, percent, plain
+from .._support.numbers import NO_BREAK, percent, plain
+from .._support.wording import join_words
+from ..diagnosis.findings.presentation import PRESENTATIONS
+from ..residual.compared import comparison_of
 
 if TYPE_CHECKING:
-    from ..diagnosis.result import Diagnosis
+    from ..diagnosis.findings.result import Diagnosis
 
 __all__ = ["effect_title", "headline"]
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..fitting import fit
-from ..parameter import Parameter
 from ..plant import Plant
+from ..plant.parameter import Parameter
 from ..recording import Recording
 from ..recording.names import names_of
 from ..session import Session

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..trajectory import FloatArray
+from .._support.arrays import FloatArray
 
 __all__ = ["consistent", "exist", "feasible"]
 

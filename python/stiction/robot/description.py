@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from .._support.given import regular
 from ..errors import InputError
-from ..given import regular
 
 __all__ = ["Description", "JointLimits", "Mimic", "read_urdf"]
 

@@ -8,16 +8,16 @@ from collections.abc import Sequence
 from typing import Final
 
 from .. import __version__
-from ..best_effort import Failure, attempt
+from .._support.best_effort import Failure, attempt
+from .._support.given import instance, whole
+from .._support.products import on_one_thread
+from .._support.progress import phase
+from .._support.workers import side_by_side, with_workers
 from ..catalogue import effects
 from ..diagnosis import ALPHA, SMALLEST, SURROGATES, diagnose
-from ..diagnosis.result import Diagnosis
+from ..diagnosis.findings.result import Diagnosis
 from ..errors import NotEnoughData
-from ..given import instance, whole
-from ..products import on_one_thread
-from ..progress import phase
 from ..session import Session
-from ..workers import side_by_side, with_workers
 from .agreement import Agreement, agreement_of
 from .fit import JointSession, RobotFit, fit_robot
 from .result import JointFindings, RobotDiagnosis, folder_names

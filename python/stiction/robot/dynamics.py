@@ -10,9 +10,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.wording import commas, did_you_mean
 from ..errors import InputError
-from ..trajectory import FloatArray
-from ..wording import commas, did_you_mean
 from .description import Description, read_urdf
 
 __all__ = ["PER_LINK", "Arm", "Drives"]

@@ -14,8 +14,8 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from ..errors import InputError
-from ..trajectory import FloatArray
 from .dynamics import PER_LINK, Arm
 from .limits import ArmLimits
 from .regression import base_parameters

@@ -6,13 +6,13 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from xml.sax.saxutils import quoteattr
 
+from .._support.keys import choice
 from ..errors import InputError
 from ..export import Export, targets
-from ..export.joint import joint_of, losses_of
 from ..export.mjcf import STIFF
 from ..export.speeds import greatest_speed
-from ..keys import choice
 from ..plant import Plant
+from ..plant.joint import joint_of, losses_of
 from .result import folder_names
 from .robot import Robot
 

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..plant_file import render
+from ..plant.plant_file import render
 from ..recording.columns import Column
 
 if TYPE_CHECKING:

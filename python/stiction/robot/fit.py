@@ -9,15 +9,15 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.given import instance, whole
+from .._support.progress import phase, steps
 from ..errors import NotEnoughData
-from ..given import instance, whole
 from ..plant import Plant
-from ..progress import phase, steps
 from ..recording import Recording
 from ..recording.repair import FEWEST_ROWS
 from ..recording.split import Split, split
 from ..session import Session
-from ..trajectory import FloatArray
 from .motion import JointMotion, motion_of
 from .regression import ArmFit, fit_arm, rows_of
 from .session import RobotSession, Run

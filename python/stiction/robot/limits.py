@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.given import brief, number
+from .._support.keys import check_keys
+from .._support.wording import commas
 from ..errors import InputError
-from ..given import brief
-from ..keys import check_keys
-from ..parameter import number
 from ..plan.limits import MARGIN
-from ..trajectory import FloatArray
-from ..wording import commas
 from .description import JointLimits
 
 if TYPE_CHECKING:

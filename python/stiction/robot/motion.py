@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from ..motion import evenly, noise_of
+from .._support.arrays import FloatArray
 from ..recording import Recording
-from ..trajectory import FloatArray
+from ..recording.motion import evenly, noise_of
 
 __all__ = ["JointMotion", "motion_of"]
 

@@ -6,12 +6,12 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ..atomic_files import write_text
-from ..best_effort import Failure, attempt
+from .._support.atomic_files import write_text
+from .._support.best_effort import Failure, attempt
+from .._support.numbers import digits, percent
+from .._support.wording import commas
 from ..report import REPORT
 from ..report.files import folder_error, make_folder
-from ..report.numbers import digits, percent
-from ..wording import commas
 from .extended import extended_text
 
 if TYPE_CHECKING:

@@ -9,17 +9,17 @@ from typing import Final
 
 import numpy as np
 
-from .. import given
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.given import number
+from .._support.progress import phase
+from .._support.wording import commas, did_you_mean
 from ..errors import InputError
-from ..parameter import number
 from ..plan.experiments import EXPERIMENTS, Experiment
 from ..plan.limits import SHARE_TO_ACCELERATE, Sizes
 from ..plan.run import LEVELS, SMALLER, TRIES
-from ..presliding import presliding
-from ..progress import phase
+from ..plant.presliding import presliding
 from ..recording.recording import SPLIT_ROLES
-from ..trajectory import FloatArray
-from ..wording import commas, did_you_mean
 from .excitation import ArmLoad, Excitation, excitation
 from .limits import ArmLimits, arm_limits
 from .robot import Robot

@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
+from .._support.wording import commas
 from ..errors import NotEnoughData
-from ..trajectory import FloatArray
-from ..wording import commas
 from .consistency import consistent, exist, feasible
 from .dynamics import PER_LINK, Arm
 from .motion import JointMotion

@@ -9,9 +9,10 @@ from html import escape
 from pathlib import Path
 from typing import Any, Final
 
-from .. import given
-from ..diagnosis.result import SCHEMA, Cause, Diagnosis, Verdict
-from ..wording import commas, plural
+from .._support import given
+from .._support.wording import commas, plural
+from ..diagnosis.findings.result import SCHEMA, Diagnosis
+from ..diagnosis.records import Cause, Verdict
 from .agreement import Agreement
 from .fit import RobotFit
 
@@ -194,7 +195,7 @@ class RobotDiagnosis:
 
     def to_json(self) -> str:
         """findings.json as text."""
-        from ..json_text import json_of
+        from .._support.json_text import json_of
 
         return json_of(self.to_dict())
 

@@ -9,16 +9,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
-from .. import given
+from .._support import given
+from .._support.given import number
+from .._support.keys import check_keys, choice
+from .._support.units import Motion
 from ..catalogue import effects
-from ..drive import INPUTS
 from ..errors import InputError
-from ..keys import check_keys, choice
-from ..parameter import number
 from ..plant import Plant
-from ..plant_file import read_toml, section
+from ..plant.drive import INPUTS
+from ..plant.plant_file import read_toml, section
 from ..recording import Columns
-from ..recording.units import Motion
 from .description import JointLimits, read_urdf
 from .dynamics import Arm
 from .limits import limits_table

@@ -8,18 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from .. import given
+from .._support import given
+from .._support.given import number
+from .._support.keys import check_keys
+from .._support.progress import phase, steps
+from .._support.wording import plural
 from ..errors import InputError
-from ..keys import check_keys
-from ..parameter import number
-from ..plant_file import read_toml, section
-from ..progress import phase, steps
+from ..plant.plant_file import read_toml, section
 from ..recording import Columns, Recording, Table, read_table
 from ..recording.names import names_of
 from ..recording.recording import recording_of, recordings_of
 from ..recording.signals import read_signals
 from ..session_entries import Entry, beside, entries_of
-from ..wording import plural
 from .robot import Joint, Robot
 
 __all__ = ["RobotSession", "Run", "load_session", "robot_of"]

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from .. import given
-from ..atomic_files import atomic_write, write_text
+from .._support import given
+from .._support.arrays import FloatArray
+from .._support.atomic_files import atomic_write, write_text
+from .._support.wording import plural
 from ..plan.files import find_signal, write_plan
 from ..plan.result import PAUSE_S
 from ..recording.recording import SPLIT_ROLES
-from ..trajectory import FloatArray
-from ..wording import plural
 from .extended import robot_text
 from .robot import Robot
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import stiction as st
-from stiction.diagnosis.base import fit_baseline
 from stiction.diagnosis.defaults import SMALLEST
-from stiction.diagnosis.model import fit_model, likeliest_of, step_beside, with_effect
-from stiction.diagnosis.regression import bounded_gains
-from stiction.diagnosis.rounds import _candidates, friction_of
-from stiction.diagnosis.selection import Search
-from stiction.diagnosis.signatures import Signatures
+from stiction.diagnosis.screening.base import fit_baseline
+from stiction.diagnosis.screening.model import fit_model, likeliest_of, step_beside, with_effect
+from stiction.diagnosis.screening.regression import bounded_gains
+from stiction.diagnosis.screening.signatures import Signatures
+from stiction.diagnosis.selection.rounds import _candidates, friction_of
+from stiction.diagnosis.selection.search import Search
 
 ALPHA = 0.01
 SHARES = (1.0, 0.3, 0.1)

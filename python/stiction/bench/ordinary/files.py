@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ...atomic_files import atomic_write, write_text
+from ..._support.atomic_files import atomic_write, write_text
 from .draw import Log, Ordinary
 from .signals import FloatArray
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..._support.json_text import json_of
 from ...bam.writer import numbers_of
-from ...json_text import json_of
-from ..joint import sidecar
+from ...plant.joint import sidecar
 from ..made import Export
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ...errors import InputError
-from ...trajectory import FloatArray
 from ..firmware import Firmware
 from ..made import Export
 from ..runs import EffortRun

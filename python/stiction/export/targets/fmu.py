@@ -6,13 +6,13 @@ import html
 import uuid
 from typing import TYPE_CHECKING, Any, Final
 
+from ..._support.json_text import json_of
 from ...errors import InputError
-from ...json_text import json_of
+from ...plant.joint import beside
 from ..fmi_description import IDENTIFIER, Described, Variable, build_description, fmi2, fmi3
 from ..fmu_archive import archive, binary_of
 from ..fmu_run import run_windows
 from ..fragments import names_of
-from ..joint import beside
 from ..machine_source import MachineSource
 from ..made import Export
 from ..runs import MotionRun

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ..joint import body_losses, head_of, joint_of, losses_of, sidecar
+from ...plant.joint import body_losses, head_of, joint_of, losses_of, sidecar
 from ..made import Export
 from ..pd import PdServo
 from ..runs import EffortRun, dry_friction

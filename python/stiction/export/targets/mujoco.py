@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ...trajectory import FloatArray
-from ..joint import body_losses, sidecar
+from ..._support.arrays import FloatArray
+from ...plant.joint import body_losses, sidecar
 from ..made import Export
 from ..mjcf import STIFF, Attributes, Mjcf
 from ..runs import MotionRun, Windows, gravity_effort

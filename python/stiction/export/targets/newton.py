@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ..joint import body_losses, head_of, joint_of, losses_of, sidecar
+from ...plant.joint import body_losses, head_of, joint_of, losses_of, sidecar
 from ..made import Export
 from ..mjcf import LATE
 from ..pd import PdServo

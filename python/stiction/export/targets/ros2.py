@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ...errors import InputError
-from ...trajectory import FloatArray
-from ..joint import Joint, body_losses, joint_of, losses_of
+from ...plant.joint import Joint, body_losses, joint_of, losses_of
 from ..made import Export
 from ..runs import EffortRun, gravity_effort
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ...atomic_files import atomic_write, write_text
+from ..._support.arrays import FloatArray
+from ..._support.atomic_files import atomic_write, write_text
 from ...errors import InputError
-from ...trajectory import FloatArray
 from ..firmware import Firmware
 from ..made import Export
 from ..runs import EffortRun

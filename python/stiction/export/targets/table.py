@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ...json_text import json_of
-from ...trajectory import FloatArray
+from ..._support.arrays import FloatArray
+from ..._support.json_text import json_of
+from ...plant.joint import joint_of
 from ..curves import Curves
-from ..joint import joint_of
 from ..made import Export
 from ..runs import EffortRun
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
 
-from ..joint import body_losses, joint_of, losses_of, sidecar
+from ...plant.joint import body_losses, joint_of, losses_of, sidecar
 from ..made import Export
 from ..runs import EffortRun, dry_friction
 

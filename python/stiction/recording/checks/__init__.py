@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...given import instance
+from ..._support.given import instance
 from ..recording import Recording
 from . import clock, readings
 from .finding import Check, Verdict

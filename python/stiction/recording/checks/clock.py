@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from ...wording import plural
+from ..._support.arrays import FloatArray
+from ..._support.wording import plural
 from ..recording import Recording
-from ..units import FloatArray
 from .finding import Check
 
 LOST: Final = 1.8

@@ -13,11 +13,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...motion import FEWEST_SAMPLES, SUPPORTS_S, Kernel, evenly, zero_order_hold
-from ...wording import plural
+from ..._support.arrays import FloatArray
+from ..._support.wording import plural
+from ..motion import FEWEST_SAMPLES, SUPPORTS_S, Kernel, evenly, zero_order_hold
 from ..names import names_of
 from ..recording import Recording
-from ..units import FloatArray
 from .finding import Check
 from .signal import SPIKE_TIMES, IntArray, is_goal, runs, without_spikes
 

@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from ...motion import count_of
+from ..._support.arrays import FloatArray
+from ..motion import count_of
 from ..recording import Recording
-from ..units import FloatArray
 from .finding import Check
 from .signal import channels_of, without_spikes
 

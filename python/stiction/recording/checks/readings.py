@@ -6,10 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from ...motion import count_of
-from ...wording import plural
+from ..._support.arrays import FloatArray
+from ..._support.wording import plural
+from ..motion import count_of
 from ..recording import Recording
-from ..units import FloatArray
 from .finding import Check
 from .signal import (
     SPIKE_COUNTS,

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...motion import count_of
+from ..._support.arrays import FloatArray
+from ..motion import count_of
 from ..recording import Recording
-from ..units import FloatArray
 
 IntArray = npt.NDArray[np.int64]
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from ..._support.given import path as file_path
+from ..._support.given import regular
+from ..._support.wording import nearest
 from ...errors import InputError
-from ...given import path as file_path
-from ...given import regular
-from ...wording import nearest
 from ..row_count import complete
 from ..stamps import one_clock
 from ..table import Table

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..._support.wording import plural
 from ...errors import InputError
-from ...wording import plural
 from ..table import Table
 from ..text.head import find_head
 from ..text.lines import blocks

@@ -9,11 +9,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
+from ..._support.arrays import FloatArray
 from ...errors import InputError
 from ..gathered import damage_error, missing_package
 from ..hdf5 import Hdf5
 from ..table import Table, table_of_arrays
-from ..units import FloatArray
 from .format import Format
 
 _SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"

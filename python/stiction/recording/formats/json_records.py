@@ -12,8 +12,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..._support.wording import commas, plural, printable
 from ...errors import InputError
-from ...wording import commas, plural, printable
 from ..expansion import Expansion
 from ..table import CELLS_KEPT, Cell, Table
 from .format import Format

@@ -14,13 +14,14 @@ from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
+from ..._support.units import known_unit
 from ...errors import InputError
 from ..table import Table
 from ..text.cells import number, split
 from ..text.lines import blocks, check_length
 from ..text.rows import Head
 from ..text.stamps import Stamps
-from ..units import FloatArray, known_unit
 from .delimited import rows_below
 from .format import Format
 

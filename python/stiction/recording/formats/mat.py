@@ -11,11 +11,11 @@ from typing import IO
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ...errors import InputError
 from ..hdf5 import Hdf5
 from ..mat5 import read_variables
 from ..table import Table, table_of_arrays, vector
-from ..units import FloatArray
 from .format import Format
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"

@@ -11,10 +11,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
+from ..._support.units import known_unit
 from ...errors import InputError
 from ..gathered import Gathered, damage_error, missing_package
 from ..table import Table
-from ..units import FloatArray, known_unit
 from .format import Format
 
 _SIGNATURES: Final = (b"MDF     ", b"UnFinMF ")

@@ -10,10 +10,10 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 import numpy as np
 from numpy.lib import format as npy
 
+from ..._support.arrays import FloatArray
 from ...errors import InputError
 from ..expansion import Expansion
 from ..table import Table, table_of_arrays, unfit, vector
-from ..units import FloatArray
 from .format import Format
 
 _ZIP_SIGNATURE: Final = b"PK"

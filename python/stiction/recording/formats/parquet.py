@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ...errors import InputError
 from ..expansion import Expansion
 from ..gathered import damage_error, missing_package
 from ..table import Table, table_of_arrays, vector
-from ..units import FloatArray
 from .format import Format
 
 _SIGNATURE = b"PAR1"

@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from ...wording import plural
+from ..._support.units import Motion
+from ..._support.wording import plural
 from ..mapping import PRESCRIBED
-from ..units import Motion
 from .evidence import Column, goes_both_ways
 from .result import DRIVE_OF
 

@@ -9,10 +9,10 @@ from typing import Final
 
 import numpy as np
 
-from ...motion import count_of
+from ..._support.arrays import FloatArray
 from ..column_words import Said, what_it_says
+from ..motion import count_of
 from ..table import Table, quote
-from ..units import FloatArray
 
 RISING: Final = 0.95
 """Share of steps upward that makes a clock: a logger's odd slip is repaired later."""

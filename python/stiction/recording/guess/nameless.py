@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ..units import FloatArray
+from ..._support.arrays import FloatArray
 from .evidence import Column, rate_of
 
 FOLLOWS: Final = 0.95

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
+from ..._support.units import MOTION_OF_QUANTITY, Motion, find_unit, unit_names
+from ..._support.wording import commas, did_you_mean
 from ...errors import InputError
-from ...wording import commas, did_you_mean
 from ..columns import CANONICAL, ROLES, Column, Columns
 from ..mapping import PRESCRIBED
-from ..units import MOTION_OF_QUANTITY, Motion, find_unit, unit_names
 from .result import DRIVE_OF, ColumnGuess, Guess
 
 __all__ = ["overrule"]

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from ..._support.units import Motion
 from ..columns import Column
 from ..mapping import PRESCRIBED
-from ..units import Motion
 
 DRIVE_OF: Final = {
     "current": "current_a",

@@ -9,12 +9,13 @@ from typing import Final
 
 import numpy as np
 
-from ...wording import commas
+from ..._support.arrays import FloatArray
+from ..._support.units import MOTION_OF_QUANTITY, UNITS, Motion
+from ..._support.wording import commas
 from ..clocks import on_main_clock
 from ..columns import ROLES
 from ..mapping import PRESCRIBED
 from ..table import Table, quote
-from ..units import MOTION_OF_QUANTITY, UNITS, FloatArray, Motion
 from . import units
 from .drive import Drive, choose_drive, quantity_of, runs_backward
 from .evidence import Column, alike, columns_of, counts_in_a_turn, rate_of, round_figure

@@ -9,7 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from ..units import UNITS, FloatArray, Motion
+from ..._support.arrays import FloatArray
+from ..._support.units import UNITS, Motion
 from .evidence import Column, counts_in_a_turn, rate_of
 
 TURNS: Final = 2.0

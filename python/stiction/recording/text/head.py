@@ -13,9 +13,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
+from ..._support.units import bracketed_unit, known_unit
 from ...errors import InputError
 from ..columns import default_name
-from ..units import bracketed_unit, known_unit
 from .cells import BLANKS, fits, is_number, split
 from .lines import blocks, check_length
 from .rows import Head

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..units import FloatArray
+from ..._support.arrays import FloatArray
 
 _ALPHABET: Final = b"0123456789+-.eEnaN\n"
 _ARROW_BLOCK: Final = 2**20

@@ -8,11 +8,11 @@ from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
+from ..._support.wording import plural
 from ...errors import InputError
-from ...wording import plural
 from ..expansion import BYTES_OF_A_NUMBER, check_expansion, most_bytes
 from ..table import CELLS_KEPT, Cell, is_missing
-from ..units import FloatArray
 from .cells import BLANKS, DECIMAL_COMMA, number, split
 from .lines import Block, IntArray, LineNumbers, check_length
 from .plain import plain_numbers

@@ -23,7 +23,7 @@ from . import (
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["BUILDERS", "Builder", "Section", "name_of"]

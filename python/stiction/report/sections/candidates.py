@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..numbers import percent
+from ..._support.numbers import percent
 from ..titles import effect_title
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from ...wording import plural
-from ..numbers import duration, quantity
-from ..scale import effort_unit_of, scale_for
+from ..._support.numbers import duration, quantity
+from ..._support.scale import effort_unit_of, scale_for
+from ..._support.wording import plural
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

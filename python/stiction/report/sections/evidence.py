@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..numbers import digits, percent
-from ..scale import scale_of
+from ..._support.numbers import digits, percent
+from ..._support.scale import scale_of
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

@@ -5,21 +5,22 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
+from ..._support.numbers import percent, percent_between, plain, quantity
+from ..._support.scale import effort_unit_of
+from ..._support.wording import join_words
 from ...catalogue import EffectRecord, effects
-from ...diagnosis.directions import describe_effect
-from ...diagnosis.orders import order_words
-from ...diagnosis.words import join_words
+from ...diagnosis.findings.directions import describe_effect
+from ...diagnosis.screening.orders import order_words
 from ..drawings import cause_name
-from ..numbers import percent, percent_between, plain, quantity
-from ..scale import effort_unit_of
 from ..titles import effect_title
 from .parameters import row, rows_of_effect
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Cause, Diagnosis
+    from ...diagnosis.findings.result import Diagnosis
+    from ...diagnosis.records import Cause
     from ...plant import Plant
-    from ...stated import Effect
+    from ...plant.stated import Effect
     from ..drawings import Drawings
 
 __all__ = ["build"]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from ..._support.numbers import percent, percent_between
 from ...catalogue import laws as catalogue
-from ..numbers import percent, percent_between
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis, LawRow
+    from ...diagnosis.findings.result import Diagnosis
+    from ...diagnosis.records import LawRow
     from ..drawings import Drawings
 
 __all__ = ["build"]

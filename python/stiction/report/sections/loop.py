@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...diagnosis.words import MISSED
-from ..numbers import percent
-from ..scale import loop_scale_of
+from ..._support.numbers import percent
+from ..._support.scale import loop_scale_of
+from ...diagnosis.findings.words import MISSED
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

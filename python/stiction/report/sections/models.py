@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...compared import comparison_of
-from ..numbers import percent, plain
-from ..scale import Scale, scale_of
+from ..._support.numbers import percent, plain
+from ..._support.scale import Scale, scale_of
+from ...residual.compared import comparison_of
 from .parameters import meanings_of, row
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis, ModelSummary
+    from ...diagnosis.findings.result import Diagnosis
+    from ...diagnosis.records import ModelSummary
     from ..drawings import Drawings
 
 __all__ = ["build"]

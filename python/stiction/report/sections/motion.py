@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..numbers import digits
-from ..scale import scale_for
+from ..._support.numbers import digits
+from ..._support.scale import scale_for
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.pictures import Trace
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.pictures import Trace
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

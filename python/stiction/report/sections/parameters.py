@@ -6,16 +6,16 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
+from ..._support.frozen import Frozen
+from ..._support.numbers import between, digits
 from ...catalogue import effects, laws
 from ...fitting.variables import with_effort_in
-from ...frozen import Frozen
-from ..numbers import between, digits
 
 if TYPE_CHECKING:
     from ...catalogue import EffectRecord
     from ...fitting.result import FitParameter
     from ...plant import Plant
-    from ...stated import Effect
+    from ...plant.stated import Effect
 
 __all__ = ["meanings_of", "row", "rows_of_effect"]
 

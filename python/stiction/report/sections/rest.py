@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...compared import comparison_of
-from ...diagnosis.words import THE_LAW
-from ..numbers import percent
-from ..scale import scale_of
+from ..._support.numbers import percent
+from ..._support.scale import scale_of
+from ...diagnosis.phrases import THE_LAW
+from ...residual.compared import comparison_of
 from ..views import hint
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

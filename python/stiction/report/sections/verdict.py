@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ...compared import comparison_of
-from ..numbers import digits, percent, percent_between
-from ..scale import scale_of
+from ..._support.numbers import digits, percent, percent_between
+from ..._support.scale import scale_of
+from ...residual.compared import comparison_of
 from ..titles import headline
 from .section import Section
 
 if TYPE_CHECKING:
-    from ...diagnosis.gain import Gain
-    from ...diagnosis.result import Diagnosis
+    from ...diagnosis.data.gain import Gain
+    from ...diagnosis.findings.result import Diagnosis
     from ..drawings import Drawings
 
 __all__ = ["build"]

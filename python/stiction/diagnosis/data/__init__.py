@@ -1,0 +1,1 @@
+"""What a diagnosis is made from: rows by their use, noise, surrogates, the gain held out."""

@@ -1,0 +1,1 @@
+"""What is reported: records in words, verdict, advice, pictures."""

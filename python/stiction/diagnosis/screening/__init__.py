@@ -1,0 +1,1 @@
+"""What may be missing, scored without refitting: candidates, the baseline, efficient scores."""

@@ -1,0 +1,134 @@
+"""Linear regression of the residual on what may be missing, the base projected off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ..._support.arrays import FloatArray
+from ...fitting.rows import Mask
+from ..data.evidence import Plan
+
+__all__ = ["FLAT", "Base", "Projected", "bounded_gains", "project", "refit_residuals", "step"]
+
+FLAT: Final = 1e-8
+"""Directions of the base with less than this share of the strongest one are dropped."""
+LEAST_TOLD: Final = 0.05
+"""A direction of which a fold tells less than this share of what all fitted rows tell is left where
+those put it: what one block alone determines, the others cannot."""
+
+SWEEPS: Final = 30
+"""Times that gains within bounds are mended one after the other, beside one that is at a bound."""
+
+
+@dataclass(frozen=True)
+class Projected:
+    """Columns with the base projected off over the rows that are fitted.
+
+    The same combination of base columns is taken off the rows held out, so that both belong to one
+    fit.
+
+    Attributes
+    ----------
+    fit, held : numpy.ndarray, shape (n_fit, k), (n_held, k)
+    """
+
+    fit: FloatArray
+    held: FloatArray
+
+
+class Base:
+    """The columns of the base, orthogonalised over the fitted rows of a plan.
+
+    A fold fits the directions that its rows tell; the others stay where the fit to all rows put
+    them.
+    """
+
+    def __init__(self, columns: FloatArray, plan: Plan) -> None:
+        scale = np.sqrt(np.sum(columns[plan.fit] ** 2, axis=0))
+        live = scale > 0.0
+        self._columns = columns[:, live] / scale[live]
+        whole = self._columns[plan.fit if plan.whole is None else plan.whole]
+        left, sizes, right = np.linalg.svd(whole, full_matrices=False)
+        kept = sizes > FLAT * sizes[0] if len(sizes) else np.zeros(0, dtype=bool)
+        self._left = left[:, kept]
+        self._inverse = right[kept].T / sizes[kept]
+        if plan.whole is not None:
+            self._left, self._inverse = self._told(plan)
+        self._held = self._columns[plan.held]
+        self._plan = plan
+
+    def _told(self, plan: Plan) -> tuple[FloatArray, FloatArray]:
+        """The directions that a fold tells, of those that all rows do."""
+        own = self._columns[plan.fit] @ self._inverse
+        shares, directions = np.linalg.eigh(own.T @ own)
+        kept = directions[:, shares > LEAST_TOLD] / np.sqrt(shares[shares > LEAST_TOLD])
+        return own @ kept, self._inverse @ kept
+
+    def off(self, fit: FloatArray) -> FloatArray:
+        """Columns of the fitted rows alone, without what the base explains; same shape."""
+        found = self._left @ (self._left.T @ fit)
+        return np.subtract(fit, found, out=found)
+
+    @property
+    def directions(self) -> FloatArray:
+        """Directions of the base over the fitted rows, each of length 1; shape (n_fit, p)."""
+        return self._left
+
+    def project(self, columns: FloatArray) -> Projected:
+        """Columns of all rows, shape (n, k) or (n,), without what the base explains."""
+        fit, held = columns[self._plan.fit], columns[self._plan.held]
+        share = self._left.T @ fit
+        return Projected(fit - self._left @ share, held - self._held @ (self._inverse @ share))
+
+
+def project(base: FloatArray, plan: Plan) -> Base:
+    """The base of a plan, ready to be projected off."""
+    return Base(base, plan)
+
+
+def step(columns: FloatArray, residual: FloatArray, plan: Plan) -> FloatArray:
+    """Residual of the held rows after one Gauss-Newton step on the fitted ones; shape (n_held,)."""
+    return Base(columns, plan).project(residual).held
+
+
+def refit_residuals(columns: FloatArray, residuals: FloatArray, fitted: Mask) -> FloatArray:
+    """Residuals of all rows once the base was fitted to each over the fitted rows; same shape."""
+    everywhere = Plan(fitted, np.ones_like(fitted))
+    return Base(columns, everywhere).project(residuals).held
+
+
+def bounded_gains(
+    normal: FloatArray, product: FloatArray, best: FloatArray, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Gains within bounds that take most, of many small regressions.
+
+    Where one of several has to stay at a bound the others are not what they are without it.
+
+    Parameters
+    ----------
+    normal : numpy.ndarray, shape (m, q, q)
+        SᵀS.
+    product : numpy.ndarray, shape (m, q)
+        Sᵀr.
+    best : numpy.ndarray, shape (m, q)
+        What takes most without bounds; 0 where nothing can be told.
+    low, high : numpy.ndarray, shape (m, q)
+    """
+    found = np.clip(best, low, high)
+    asked = np.flatnonzero(np.any(found != best, axis=1)) if best.shape[1] > 1 else ()
+    if len(asked):
+        own, given, slope = (
+            found[asked],
+            product[asked],
+            np.diagonal(normal, axis1=1, axis2=2)[asked],
+        )
+        for _ in range(SWEEPS):
+            for k in range(own.shape[1]):
+                rest = given[:, k] - np.einsum("ki,ki->k", normal[asked, k], own)
+                moved = own[:, k] + rest / np.maximum(slope[:, k], 1e-300)
+                own[:, k] = np.clip(moved, low[asked, k], high[asked, k])
+        found[asked] = own
+    return found

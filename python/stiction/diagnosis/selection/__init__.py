@@ -1,0 +1,1 @@
+"""Which candidates are causes: refits, decisions, other laws, and what stays undecided."""

@@ -1,0 +1,82 @@
+"""A motion near a measured one that a plant makes by itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from .._support.arrays import FloatArray
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..plant import Plant
+    from .weak_form import Start, WeakForm
+
+__all__ = ["nearby_motion"]
+
+PULL_RATE: Final = 10.0
+"""Rate at which a run is drawn back to the measured motion, over the support of the kernel: fast
+enough to stay within counts of it, slow enough that the counts do not shake it."""
+STEADY: Final = 0.3
+"""Most that this rate may be over one sample; a sampled spring gets unstable at 2."""
+
+
+def nearby_motion(
+    form: WeakForm,
+    plant: Plant,
+    start: Start = None,
+    *,
+    position: FloatArray | None = None,
+    load: FloatArray | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """A motion near the measured one that the plant makes by itself, and what that took.
+
+    One simulation over the whole recording, drawn to the measured motion by a critically damped
+    spring.
+
+    Parameters
+    ----------
+    form : WeakForm
+    plant : Plant
+    start : dict, optional
+        Friction state at the first row.
+    position : numpy.ndarray, shape (rows,), optional
+        Takes the place of the motion that drives friction.
+    load : numpy.ndarray, shape (rows - 1,), optional
+        Takes the place of what was recorded to act beside the input.
+
+    Returns
+    -------
+    numpy.ndarray, shape (rows,)
+        What the sensor would read, without its rounding.
+    numpy.ndarray, shape (rows - 1,)
+        Load together with the effort of the pull: under it the plant makes this motion.
+
+    Raises
+    ------
+    InputError
+        It runs away from the measured motion.
+    """
+    target = form.position if position is None else position
+    rate = min(PULL_RATE / form.kernel.support, STEADY / form.dt)
+    inertia = form.own(plant).inertia
+    # The pull acts on what the motor turns at once, and sampled it must not shake that either.
+    inertia *= min(1.0, STEADY * (1.0 - _behind_a_shaft(plant)) / (rate * form.dt))
+    motor = form.start_motor(plant, target)
+    load = form.load[:-1] if load is None else load
+    motion = form.motion if position is None else form.with_motion(position, load=load)
+    readings, pull = motor.accompany(
+        motion, inertia * rate**2, 2.0 * inertia * rate, start=start, strict=False
+    )
+    if not np.all(np.isfinite(readings)):
+        raise InputError(
+            f"{plant.source}: a simulation cannot be kept near the measured motion; it runs away"
+        )
+    return np.concatenate([target[:1], readings]), load + pull
+
+
+def _behind_a_shaft(plant: Plant) -> float:
+    """Share of the inertia that hangs on a shaft or lies behind a gap, the greatest of these."""
+    shares = (each.parameters.get("inertia_share") for each in plant.effects)
+    return max((share.value for share in shares if share is not None), default=0.0)
