@@ -30,6 +30,8 @@ __all__ = ["Compensated", "Compensation", "compensate", "feed_forward", "observe
 SHARES: Final = (0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0)
 """Of the whole feed-forward, that are simulated."""
 WHOLE: Final = SHARES.index(1.0)
+LAG: Final = 0.02
+"""Share of the error that more than the whole has to remove for what is left to be a lag."""
 DRAWS: Final = 20
 """Machines within the intervals of the parameters, unless stated."""
 REST_S: Final = 2.0
@@ -237,6 +239,12 @@ class Compensation:
             text += f" It would hurt; {self.best:g} of it is best."
         elif self.margin is not None:
             text += f" {self.margin:g} times as much would be worse than none."
+        elif np.nanmin(rms) < (1.0 - LAG) * after:
+            # The friction of the plant is known to the last digit here: more of it bears a lag.
+            text += (
+                f" What is left is no friction, but what the controller lags without it: "
+                f"{self.best:g} times as much would leave {np.nanmin(rms):.3g} {unit}."
+            )
         return text
 
     def to_dict(self) -> dict[str, Any]:

@@ -35,8 +35,9 @@ DIVISIONS: Final = (2, 4, 8, 16, 32)
 class Simulation:
     """A motor, the parameters by which it is differentiated, and its sample time.
 
-    Every other parameter is the motor's, also where its default would follow one of these, as in an
-    ``Ensemble``; each run starts from the state of the motor.
+    What a plant leaves open and follows one of these by default moves with it, as it does where
+    the plant states another value. Of a motor every other parameter stays, as in an ``Ensemble``.
+    Each run starts from the state of the motor.
 
     Parameters
     ----------
@@ -58,15 +59,15 @@ class Simulation:
 
     def __init__(self, machine: Plant | Motor, parameters: Sequence[str], dt: float) -> None:
         given.instance(machine, Plant | Motor, "simulate: machine", "a Plant or a Motor")
-        if isinstance(machine, Plant):
-            machine = machine.motor()
-        self._motor = machine.copy()
+        plant = machine if isinstance(machine, Plant) else None
+        self._motor = machine.motor() if isinstance(machine, Plant) else machine.copy()
         self._dt = number(dt, "simulate: dt")
         names = given.names(parameters, "simulate: parameters")
         known = self._motor.parameters
         self.paths = tuple(path_of(name, known, "simulate: parameters: ") for name in names)
         if len(set(self.paths)) < len(self.paths):
             raise InputError("simulate: parameters: one is named twice; drop one of its names")
+        self._following = _following(plant, self.paths)
 
     def run(
         self, values: FloatArray, current: FloatArray, load: FloatArray
@@ -145,10 +146,12 @@ class Simulation:
         """
         if not self.paths:
             return np.zeros(0)
-        moved, turned = self._with(values).sensitivity(
-            current, self._dt, list(self.paths), load=load
-        )
-        found: FloatArray = moved @ position + turned @ velocity
+        every = [*self.paths, *(path for path, _, _ in self._following)]
+        moved, turned = self._with(values).sensitivity(current, self._dt, every, load=load)
+        each = moved @ position + turned @ velocity
+        found: FloatArray = each[: len(self.paths)]
+        for own, (_, place, factor) in zip(each[len(self.paths) :], self._following, strict=True):
+            found[place] += factor * own
         return found
 
     def by_effort(
@@ -209,9 +212,11 @@ class Simulation:
         settings = self._motor.settings()
         law, keywords = self._motor.friction_settings()
         effects = {name: dict(each) for name, each in settings["effects"].items()}
-        for path, value in zip(
-            self.paths, np.asarray(values, dtype=np.float64).tolist(), strict=True
-        ):
+        numbers = np.asarray(values, dtype=np.float64).tolist()
+        given_values = dict(zip(self.paths, numbers, strict=True))
+        for path, place, factor in self._following:
+            given_values[path] = factor * numbers[place]
+        for path, value in given_values.items():
             part, _, name = path.partition(".")
             if part == "friction":
                 keywords = {**keywords, name: value}
@@ -231,6 +236,21 @@ class Simulation:
             state["ambient"] = motor.state["ambient"]
         motor.state = state
         return motor
+
+
+def _following(plant: Plant | None, paths: Sequence[str]) -> list[tuple[str, int, float]]:
+    """What a plant leaves open and one of its named parameters moves: path, place, factor."""
+    if plant is None:
+        return []
+    open_to = {f"friction.{r.name}": r.follows for r in plant.friction.record.parameters}
+    return [
+        (path, paths.index(f"friction.{follows[0]}"), follows[1])
+        for path, follows in open_to.items()
+        if follows is not None
+        and path not in paths
+        and path.partition(".")[2] not in plant.friction.parameters
+        and f"friction.{follows[0]}" in paths
+    ]
 
 
 def _motion_of(motor: Motor, current: FloatArray, load: FloatArray, dt: float) -> Motion:

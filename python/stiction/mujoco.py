@@ -18,7 +18,7 @@ from .plant.parameter import Parameter
 if TYPE_CHECKING:
     from .plant.stated import Effect
 
-__all__ = ["Joint", "attach", "simulator", "step"]
+__all__ = ["Joint", "attach", "patch", "simulator", "step"]
 
 AS_FOUND: Final = 1e-9
 """Share of the change of a velocity by which the simulator may miss it through rounding alone."""
@@ -115,8 +115,9 @@ class Joint:
 def attach(model: Any, joint: str, plant: Plant, *, armature: bool = True) -> Joint:
     """Give a joint of a model the friction of a plant.
 
-    Damping and frictionloss of the joint become 0, for the plant has its own; with ``armature``
-    that becomes the inertia of the plant. Simulate with ``step`` of this module in the place of
+    Damping and frictionloss of the joint become 0, and motors on it that have no input (of
+    ``patch``, say) act no longer, for the plant has its own friction; with ``armature`` that
+    becomes the inertia of the plant. Simulate with ``step`` of this module in the place of
     ``mujoco.mj_step``.
 
     Parameters
@@ -144,9 +145,82 @@ def attach(model: Any, joint: str, plant: Plant, *, armature: bool = True) -> Jo
     )
     dof = made._dof
     model.dof_damping[dof] = model.dof_frictionloss[dof] = 0.0
+    for actuator in range(len(model.actuator_trntype)):
+        on_joint = int(model.actuator_trntype[actuator]) == int(simulator().mjtTrn.mjTRN_JOINT)
+        at = int(model.actuator_trnid[actuator, 0])
+        if on_joint and int(model.jnt_dofadr[at]) == dof and not model.actuator_ctrlnum[actuator]:
+            model.actuator_gear[actuator] = 0.0
     if armature and "inertia" in plant.body:
         model.dof_armature[dof] = plant.inertia
     return made
+
+
+def patch(
+    spec: Any, joint: str, plant: Plant, *, speed: float | None = None, drive: bool = True
+) -> tuple[str, ...]:
+    """Write a plant into a joint of a model that is being edited, as ``export("mujoco")`` does.
+
+    MuJoCo's own elements act: armature, damping and frictionloss, or a ``dcmotor`` without an input
+    for a law that its LuGre has, and for cogging; the motor, with delay, limit, or the controller
+    of a servo. ``attach`` has every law and effect.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+    joint : str
+        Name of a hinge or a slide.
+    plant : Plant
+    speed : float, optional
+        Greatest speed at which friction matters, rad/s or m/s; as for ``Plant.export``.
+    drive : bool, optional
+        False where the model has the motor of this joint already.
+
+    Returns
+    -------
+    tuple of str
+        What it cannot hold, a sentence each.
+
+    Raises
+    ------
+    InputError
+        No such joint; MuJoCo is missing.
+    """
+    from .export.mjcf import STIFF, Mjcf
+    from .export.speeds import greatest_speed
+
+    mujoco = simulator()
+    given.instance(plant, Plant, "plant", "a Plant")
+    own = spec.joint(given.word(joint, "joint"))
+    if own is None:
+        names = ", ".join(each.name for each in spec.joints)
+        raise InputError(f"joint = '{joint}' is not in the model; there are {names}")
+    made = Mjcf.of(plant, greatest_speed(plant, speed))
+    own.armature, own.frictionloss = made.joint["armature"], made.joint["frictionloss"]
+    own.solref_friction[:], own.solimp_friction[:3] = STIFF.values()
+    own.damping[:] = [made.joint["damping"], *[0.0] * (len(own.damping) - 1)]
+    for tag, attributes in made.actuators if drive else made.actuators[1:]:
+        named = {"name": f"{joint}_{attributes['name']}", "target": joint}
+        actuator = spec.add_actuator(trntype=mujoco.mjtTrn.mjTRN_JOINT, **named)
+        _set(mujoco, actuator, tag, dict(attributes))
+    return made.lost
+
+
+def _set(mujoco: Any, actuator: Any, tag: str, given_as: dict[str, Any]) -> None:
+    """Attributes of MJCF, on an actuator of a specification."""
+    del given_as["name"]
+    if tag == "motor":
+        actuator.set_to_motor()
+    else:
+        inputs = {"none": mujoco.mjtCtrlInput.mjINPUT_NONE, "pos": mujoco.mjtCtrlInput.mjINPUT_POS}
+        names = given_as.keys() - {"input", "delay", "nsample"}
+        own = {name: given_as.pop(name) for name in names}
+        actuator.set_to_dcmotor(**own, ctrlspec=int(inputs[given_as.pop("input")]))
+    if "gear" in given_as:
+        actuator.gear[0] = given_as.pop("gear")
+    if "ctrllimited" in given_as:
+        actuator.ctrllimited = given_as.pop("ctrllimited") == "true"
+    for name, value in given_as.items():
+        setattr(actuator, name, value)
 
 
 def step(model: Any, data: Any, joints: Sequence[Joint]) -> None:

@@ -220,6 +220,25 @@ def arguments(tmp_path):
     return [*given, "--session", str(tmp_path / "session.toml"), "-o", str(tmp_path / "out")]
 
 
+SERVO = {"kind": "servo", "proportional": 3.0, "supply_v": 12.0, "resistance_ohm": 3.7,
+         "torque_constant": 2.0}  # fmt: skip
+
+
+def test_a_servo_that_takes_goals_alone_is_refused_as_that(tmp_path, capsys, arguments):
+    plant(DRY, drive=SERVO).save(tmp_path / "plant.toml")
+    assert run(arguments) == 2
+    assert "takes a goal and nothing beside it" in capsys.readouterr().err
+
+
+def test_what_a_controller_lags_is_not_taken_for_friction():
+    # It lags by the speed over kp, beside which friction over kp·kv is small.
+    lagging = {"kind": "position_velocity", "kp": 8.0, "kv": 4.0}
+    found = compensate(plant(DRY, controller=lagging), recording())
+    assert found.best == SHARES[-1]
+    assert "What is left is no friction" in found.message
+    assert "What is left is no friction" not in compensate(machine(), recording()).message
+
+
 def test_the_command_writes_numbers_and_figures(tmp_path, capsys, arguments):
     assert run(arguments) == 0
     said = capsys.readouterr().out

@@ -58,18 +58,33 @@ def shares(found):
     return [each.share for each in found.runs]
 
 
-def test_mujoco_lacks_what_it_says_and_its_callback_has_it(cogged):
+def test_mujoco_lacks_what_it_says_and_its_callback_has_it():
     pytest.importorskip("mujoco")
-    machine, recorded = cogged
+    machine = plant(DRY, BIAS)
     made = machine.export("mujoco", speed=10.0)
-    assert any(sentence.startswith("cogging:") for sentence in made.lost)
-    found = made.check(recorded)
+    assert any(sentence.startswith("torque_bias:") for sentence in made.lost)
+    found = made.check(session(machine))
     native, callback = shares(found)
     assert native < 0.5
     assert callback > 0.99
-    assert found.without > 3.0 * found.whole
+    assert found.without > 2.0 * found.whole
     assert "of the gain; with the callback" in found.message
     assert found.message.startswith("mujoco keeps ")
+
+
+LUGRE = {"law": "lugre", "coulomb": 0.3, "breakaway": 0.4, "initial_stiffness": 60.0,
+         "damping": 0.3, "viscous": 0.02}  # fmt: skip
+LATE = {"name": "input_delay", "delay": 0.012}
+
+
+@pytest.mark.parametrize("effects", [(COGGING,), (COGGING, LATE), (LATE,)])
+@pytest.mark.parametrize("friction", [DRY, LUGRE])
+def test_mujoco_keeps_what_its_own_elements_hold(friction, effects):
+    pytest.importorskip("mujoco")
+    machine = plant(friction, *effects)
+    native, callback = shares(machine.export("mujoco").check(session(machine)))
+    assert native > 0.97
+    assert callback > 0.97
 
 
 @pytest.mark.parametrize("target", ["urdf", "sdf"])
@@ -88,6 +103,18 @@ def test_curves_keep_a_cogging(cogged):
     (code,) = shares(machine.export("c").check(recorded))
     # It has more points than the table.
     assert code > max(table, 0.998)
+
+
+def test_rust_keeps_what_the_c_keeps(cogged):
+    if shutil.which("cc") is None or shutil.which("cargo") is None:
+        pytest.skip("no C compiler or no cargo is installed")
+    machine, recorded = cogged
+    try:
+        (rust,) = machine.export("rust").check(recorded).runs
+    except st.InputError as error:
+        pytest.skip(f"{error}")
+    (code,) = machine.export("c").check(recorded).runs
+    assert rust.error == pytest.approx(code.error, rel=1e-9)
 
 
 def test_an_fmu_keeps_all_of_a_cogging(cogged):
@@ -155,10 +182,10 @@ def test_gravity_is_given_to_the_bodies_of_a_simulator():
                       "resistance_ohm": 2.0, "torque_constant": 0.5}), "a goal"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_run_is_a_sentence(machine, words):
-    pytest.importorskip("mujoco")
-    with pytest.raises(st.InputError, match=words):
-        machine.export("mujoco").check(session(plant()))
+@pytest.mark.parametrize("target", ["mujoco", "table"])
+def test_what_cannot_be_run_is_a_sentence(machine, words, target):
+    with pytest.raises(st.InputError, match=f"{target} is not run for a servo: .*{words}"):
+        machine.export(target).check(session(plant()))
 
 
 def test_a_package_or_compiler_that_is_missing_is_a_sentence(cogged, monkeypatch):
@@ -167,6 +194,8 @@ def test_a_package_or_compiler_that_is_missing_is_a_sentence(cogged, monkeypatch
     with pytest.raises(st.InputError, match="pip install mujoco"):
         machine.export("mujoco").check(recorded)
     monkeypatch.setattr(shutil, "which", lambda _: None)
+    with pytest.raises(st.InputError, match="there is no cargo"):
+        machine.export("rust").check(recorded)
     with pytest.raises(st.InputError, match="there is no C compiler"):
         machine.export("c").check(recorded)
 

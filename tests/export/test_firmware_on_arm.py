@@ -11,10 +11,15 @@ from .test_firmware import NEAR_FLOAT, along, level_of, motion
 from .test_steady import plant
 
 SAMPLES = 400
-PROGRAM = """
+STEPS = """
 #include "stiction_feedforward.h"
-#include "motion.h"
 static stiction_state state;
+#define BEGIN stiction_init(&state)
+#define STEP(v, dt, effort, load) stiction_step(&state, v, dt, effort, load, 25.0f)
+"""
+PROGRAM = """
+#include "steps.h"
+#include "motion.h"
 static float friction[SAMPLES];
 static void call(int number, int file, const void *data, int size)
 {
@@ -28,10 +33,10 @@ void begin(void);
 void begin(void)
 {
     int k;
-    stiction_init(&state);
+    BEGIN;
     for (k = 0; k < SAMPLES; ++k) {
         const float *m = motion_of[k];
-        friction[k] = stiction_step(&state, m[0], m[1], m[2], m[3], 25.0f);
+        friction[k] = STEP(m[0], m[1], m[2], m[3]);
     }
     call(4, 1, friction, sizeof friction); /* write */
     call(1, 0, 0, 0); /* exit */
@@ -43,6 +48,23 @@ needs_tools = pytest.mark.skipif(
 )
 
 
+def stepped_on_arm(folder, columns, steps, *sources):
+    """Friction along a motion, by a program of bare metal; ``steps`` says how it steps."""
+    rows = ",\n".join(f"{{{', '.join(float(x).hex() + 'f' for x in row)}}}" for row in columns.T)
+    number = len(columns[0])
+    header = f"#define SAMPLES {number}\nstatic const float motion_of[SAMPLES][4] = {{\n{rows}}};\n"
+    (folder / "motion.h").write_text(header)
+    (folder / "steps.h").write_text(steps)
+    (folder / "main.c").write_text(PROGRAM)
+    flags = [*firmware.FLAGS, "-Wall", "-Wextra", "-Werror"]
+    link = [*firmware.LINK, "-o", "program.elf", "-lm"]
+    command = ["arm-none-eabi-gcc", *flags, "main.c", *sources, *link]
+    subprocess.run(command, cwd=folder, check=True)
+    emulated = ["qemu-arm", "-cpu", firmware.CPU, folder / "program.elf"]
+    done = subprocess.run(emulated, capture_output=True, check=True)
+    return np.frombuffer(done.stdout, dtype="<f4").astype(float)
+
+
 @needs_tools
 @pytest.mark.parametrize("name", firmware.LAWS)
 def test_a_law_steps_on_a_microcontroller(name, tmp_path):
@@ -50,19 +72,7 @@ def test_a_law_steps_on_a_microcontroller(name, tmp_path):
     own.export("c").save(tmp_path)
     law = own.friction.model()
     columns = np.float32(motion(np.random.default_rng(5), law, SAMPLES))
-    rows = ",\n".join(f"{{{', '.join(float(x).hex() + 'f' for x in row)}}}" for row in columns.T)
-    header = (
-        f"#define SAMPLES {SAMPLES}\nstatic const float motion_of[SAMPLES][4] = {{\n{rows}}};\n"
-    )
-    (tmp_path / "motion.h").write_text(header)
-    (tmp_path / "main.c").write_text(PROGRAM)
-    flags = [*firmware.FLAGS, "-Wall", "-Wextra", "-Werror"]
-    link = [*firmware.LINK, "-o", "program.elf", "-lm"]
-    sources = ["main.c", "stiction_feedforward.c"]
-    subprocess.run(["arm-none-eabi-gcc", *flags, *sources, *link], cwd=tmp_path, check=True)
-    command = ["qemu-arm", "-cpu", firmware.CPU, tmp_path / "program.elf"]
-    done = subprocess.run(command, capture_output=True, check=True)
-    found = np.frombuffer(done.stdout, dtype="<f4").astype(float)
+    found = stepped_on_arm(tmp_path, columns, STEPS, "stiction_feedforward.c")
     core = along(law, *columns.astype(float))
     assert np.max(np.abs(found - core)) / level_of(law, core) < NEAR_FLOAT
 

@@ -88,13 +88,35 @@ def test_a_motor_goes_on_from_where_it_is():
     assert np.asarray(position).tolist() == motor.simulate(current(), DT).position.tolist()
 
 
-def test_what_follows_a_parameter_by_default_stays():
-    plant = st.Plant.from_dict(
-        {"drive": {"gain": 1.0}, "body": {"inertia": 0.01}, "friction": {"law": "coulomb"}}
-    )
-    # Break-away is 0.35 N·m, as where the motor was made: 0.3 N·m move nothing.
-    position, _ = simulate(plant, {"coulomb": 0.1}, np.full(20, 0.3), 1e-3)
-    assert not np.any(np.asarray(position))
+def plain(**friction):
+    return st.Plant.from_dict(
+        {"drive": {"gain": 1.0}, "body": {"inertia": 0.01},
+         "friction": {"law": "coulomb", **friction}}
+    )  # fmt: skip
+
+
+def test_what_follows_a_parameter_by_default_moves_with_that_of_a_plant():
+    # A fit of dry friction states no break-away: another level is that of rest as well.
+    effort = 0.3 * np.sin(40.0 * 1e-3 * np.arange(400))
+    for stated in (plain(), plain(coulomb=0.2)):
+        for level in (0.1, 0.25):
+            position, _ = simulate(stated, {"coulomb": level}, effort, 1e-3)
+            own = plain(coulomb=level).simulate(effort, 1e-3).position
+            assert np.asarray(position).tobytes() == own.tobytes()
+            assert np.any(own)
+
+    def loss(level):
+        return jax.numpy.sum(simulate(plain(coulomb=0.2), {"coulomb": level}, effort, 1e-3)[0] ** 2)
+
+    chord = float(loss(0.1 + STEP) - loss(0.1 - STEP)) / (2.0 * STEP)
+    assert float(jax.grad(loss)(0.1)) == pytest.approx(chord, rel=NEAR)
+
+
+def test_what_a_plant_states_and_what_a_motor_has_stays():
+    for machine_of in (plain(coulomb=0.2, breakaway=0.35), plain().motor()):
+        # Break-away is 0.35 N·m: 0.3 N·m move nothing.
+        position, _ = simulate(machine_of, {"coulomb": 0.1}, np.full(20, 0.3), 1e-3)
+        assert not np.any(np.asarray(position))
 
 
 def test_refusals_are_sentences():

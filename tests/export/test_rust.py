@@ -13,6 +13,7 @@ from stiction.export.fragments import names_of
 from stiction.export.translation import TranslationError, parse, rust_of
 
 from .test_firmware import LAWS, NEAR, NEAR_FLOAT, along, level_of, motion, record_of, tables
+from .test_firmware_on_arm import firmware, needs_tools, stepped_on_arm
 from .test_steady import plant
 
 SAMPLES = 2000
@@ -215,7 +216,37 @@ fn steps() {
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_a_processor_without_an_operating_system_gets_it(tmp_path):
+STATIC = """
+#![no_std]
+use core::panic::PanicInfo;
+use stiction_plant::Contact;
+static mut CONTACT: Option<Contact> = None;
+#[no_mangle]
+pub extern "C" fn begin_contact() {
+    unsafe { CONTACT = Some(Contact::new()) };
+}
+#[no_mangle]
+pub extern "C" fn step_contact(v: f32, dt: f32, effort: f32, load: f32) -> f32 {
+    match unsafe { &mut *core::ptr::addr_of_mut!(CONTACT) } {
+        Some(contact) => contact.step(v, dt, effort, load, 25.0),
+        None => f32::NAN,
+    }
+}
+#[panic_handler]
+fn panic(_: &PanicInfo) -> ! {
+    loop {}
+}
+"""
+STEPS = """
+void begin_contact(void);
+float step_contact(float v, float dt, float effort, float load);
+#define BEGIN begin_contact()
+#define STEP(v, dt, effort, load) step_contact(v, dt, effort, load)
+"""
+
+
+def built_for_arm(folder, own):
+    """A static library for a microcontroller that steps a plant in floats."""
     cargo = shutil.which("cargo") or pytest.skip("no cargo is installed")
     rustup = shutil.which("rustup") or pytest.skip("no rustup is installed")
     there = subprocess.run(
@@ -223,13 +254,37 @@ def test_a_processor_without_an_operating_system_gets_it(tmp_path):
     )
     if ARMED not in there.stdout.split():
         pytest.skip(f"rustup has no {ARMED}")
-    plant({"law": "lugre"}, *effects()).export("rust").save(tmp_path)
-    command = [cargo, "build", "--quiet", "--release", "--features", "f32", "--target", ARMED]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    own.export("rust").save(folder / "plant")
+    (folder / "Cargo.toml").write_text(
+        '[package]\nname = "driver"\nversion = "0.1.0"\nedition = "2021"\n'
+        '[lib]\npath = "lib.rs"\ncrate-type = ["staticlib"]\n'
+        '[dependencies]\nstiction_plant = { path = "plant", features = ["f32"] }\n'
+        '[profile.release]\nopt-level = "s"\nlto = true\npanic = "abort"\n[workspace]\n'
+    )
+    (folder / "lib.rs").write_text(STATIC)
+    command = [cargo, "build", "--quiet", "--release", "--target", ARMED]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     if "failed to get `libm`" in done.stderr:
         pytest.skip("libm cannot be fetched here")
     assert done.returncode == 0, done.stderr
     assert not done.stderr
+    return folder / "target" / ARMED / "release" / "libdriver.a"
+
+
+def test_a_processor_without_an_operating_system_gets_it(tmp_path):
+    assert built_for_arm(tmp_path, plant({"law": "lugre"}, *effects())).is_file()
+
+
+@needs_tools
+@pytest.mark.parametrize("name", firmware.LAWS)
+def test_a_law_steps_on_a_microcontroller(name, tmp_path):
+    own = plant(firmware.friction_of(name))
+    library = built_for_arm(tmp_path, own)
+    law = own.friction.model()
+    columns = np.float32(motion(np.random.default_rng(5), law, 400))
+    found = stepped_on_arm(tmp_path, columns, STEPS, str(library))
+    core = along(law, *columns.astype(float))
+    assert np.max(np.abs(found - core)) / level_of(law, core) < NEAR_FLOAT
 
 
 @pytest.mark.parametrize(

@@ -150,6 +150,38 @@ def test_a_table_is_off_by_what_it_says():
     assert gains["kA"] == 0.01
 
 
+def test_gains_are_those_of_an_arm_and_of_an_elevator():
+    body = {"inertia": 0.01, "gravity_amplitude": 0.4, "gravity_zero_rad": 0.3}
+    arm = plant(DRY, body=body, drive={"input": "voltage_v", "gain": 0.5})
+    gains = arm.export("table", speed=5.0).numbers
+    position, velocity, acceleration = 1.1, 2.0, 3.0
+    volts = gains["kS"] + gains["kV"] * velocity + gains["kA"] * acceleration
+    volts += gains["kG"] * np.cos(position - gains["level_rad"])
+    effort = arm.friction_curve([velocity])[0] + 0.01 * acceleration
+    effort += arm.position_effort([position])[0]
+    assert 0.5 * volts == pytest.approx(effort, rel=1e-9)
+    slide = st.Plant.from_dict(
+        {
+            "motion": {"kind": "linear"},
+            "drive": {"input": "voltage_v", "gain": 30.0},
+            "body": {"inertia": 2.0, "weight_n": 9.0},
+            "friction": {"law": "coulomb", "coulomb": 20.0, "viscous": 60.0},
+        }
+    )
+    level = slide.export("table").numbers
+    assert level["kG"] == pytest.approx(0.3)
+    assert "kG" not in plant(DRY).export("table").numbers
+    wpimath = pytest.importorskip("wpimath.controller")
+    own = [gains[name] for name in ("kS", "kG", "kV")]
+    arm_forward = wpimath.ArmFeedforward(*own, gains["kA"])
+    still = volts - gains["kA"] * acceleration
+    assert arm_forward.calculate(position - gains["level_rad"], velocity) == pytest.approx(still)
+    own = [level[name] for name in ("kS", "kG", "kV", "kA")]
+    assert wpimath.ElevatorFeedforward(*own).calculate(0.1) == pytest.approx(
+        (20.0 + 6.0 + 9.0) / 30.0, rel=1e-6
+    )
+
+
 @pytest.mark.parametrize("name", ["table", "c"])
 def test_what_a_curve_cannot_hold_is_told_whatever_its_name(name):
     # The name of an effect may begin as a sentence about the curve does.

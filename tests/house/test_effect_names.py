@@ -15,6 +15,7 @@ TABLES: dict[str, tuple[int, str]] = {
     "compare/document.py": (3, "properties of laws that are called as effects are"),
     "compare/properties/sliding.py": (2, "properties of laws that are called as effects are"),
     "diagnosis/findings/presentation.py": (29, "the entry of each effect"),
+    "export/mjcf.py": (4, "the effects that simulators have elements for"),
     "ode.py": (3, "the formula of each"),
     "paper/local.py": (1, "the effect that an experiment is simulated with"),
     "plant/steady.py": (1, "a family that is called as one of its effects is"),

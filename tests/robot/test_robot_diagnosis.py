@@ -115,6 +115,7 @@ def test_what_was_found_is_a_robot_again_and_goes_to_other_tools(
     assert float(base.attrib["damping"]) == pytest.approx(8.0, rel=0.05)
     assert float(base.attrib["friction"]) == pytest.approx(6.0, rel=0.05)
     joints = ET.parse(tmp_path / "mujoco" / "joints.xml").getroot().findall("joint")
+    assert all(joint.get("solreffriction") == "0.0001 1.0" for joint in joints)
     assert [joint.attrib["name"] for joint in joints] == list(HIDDEN.joints)
     assert all((tmp_path / "table" / name / "table.json").is_file() for name in HIDDEN.joints)
 

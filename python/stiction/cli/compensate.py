@@ -71,6 +71,11 @@ def compensate(
     from .recording_run import begin_for, stems_of
 
     machine = Plant.load(plant)
+    if machine.servo:
+        raise InputError(
+            f"{plant}: the drive of a servo takes a goal and nothing beside it, so that nothing "
+            "can be added to its effort; state a drive and its controller"
+        )
     told = load_begins(plant, machine)
     known, note = (intervals, "") if intervals is not None else _beside(plant, machine)
     with progress(quiet):

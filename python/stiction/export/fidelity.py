@@ -179,6 +179,12 @@ class Bench:
         target = targets().get(made.target)
         if target is None or target.runs is None:
             raise InputError(f"{made.target}: there is nothing that could be run; read its files")
+        if self._plant.servo:
+            raise InputError(
+                f"{made.target} is not run for a servo: its input is a goal, and along the "
+                "measured motion what its loop does, late or limited, is taken for friction; "
+                "simulate the goal of a recording, and compare positions"
+            )
         runs = target.runs(made, self._plant)
         moving = [run for run in runs if isinstance(run, MotionRun)]
         if moving:

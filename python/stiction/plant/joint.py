@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -16,7 +16,16 @@ if TYPE_CHECKING:
     from . import Plant
     from .stated import Effect
 
-__all__ = ["Joint", "beside", "joint_of", "losses_of", "sidecar", "speeds_up_to"]
+__all__ = [
+    "Joint",
+    "beside",
+    "body_losses",
+    "head_of",
+    "joint_of",
+    "losses_of",
+    "sidecar",
+    "speeds_up_to",
+]
 
 SPEEDS: Final = 200
 PROBED: Final = 10.0
@@ -98,12 +107,17 @@ def _line(speeds: FloatArray, friction: FloatArray) -> tuple[float, float]:
 
 
 def losses_of(
-    plant: Plant, joint: Joint, *, limited: bool = False, directed: bool = False
+    plant: Plant,
+    joint: Joint,
+    *,
+    limited: bool = False,
+    directed: bool = False,
+    own: Collection[str] = (),
 ) -> tuple[str, ...]:
     """What a joint of these numbers cannot hold, a sentence each.
 
     ``limited`` says whether the target has the limit of the drive, ``directed`` whether it has the
-    dry friction of each direction.
+    dry friction of each direction; ``own`` names effects that it has beside these numbers.
     """
     unit, lost = plant.effort_unit, []
     per = f"{plant.position_unit}/s"
@@ -122,7 +136,7 @@ def losses_of(
         lost.append(f"friction of the two directions differs by {joint.one_sided:.3g} {unit}")
 
     def held(effect: Effect) -> bool:
-        return _changes(plant, effect, directed=directed)
+        return effect.name in own or _changes(plant, effect, directed=directed)
 
     return (*lost, *beside(plant, held, limited=limited))
 
@@ -145,6 +159,24 @@ def beside(
     return tuple(lost)
 
 
+def body_losses(plant: Plant, *, armature: bool = False) -> tuple[str, ...]:
+    """What of a plant the bodies of a simulator have to have, a sentence each.
+
+    ``armature`` says whether the target has its whole inertia already, a payload's with it.
+    """
+    unit, told = plant.effort_unit, []
+    inertia = "kg·m²" if plant.motion == "rotary" else "kg"
+    if plant.gravity:
+        told.append(f"a pendulum of {plant.gravity:.6g} {unit}: give the body its mass")
+    if plant.weight:
+        told.append(f"a weight of {plant.weight:.6g} {unit}: give the body its mass")
+    if told and armature:
+        carried = plant.payload[0]
+        share = f"{carried:.3g} {inertia} of the payload" if carried else "what of it is the body's"
+        told.append(f"armature beside a body that has its mass: take off {share}")
+    return tuple(told)
+
+
 def _changes(plant: Plant, effect: Effect, *, directed: bool) -> bool:
     """Whether an effect changes the numbers of a joint, those of each direction where it is."""
     without = replace(plant, effects=tuple(e for e in plant.effects if e.name != effect.name))
@@ -160,4 +192,13 @@ def sidecar(plant: Plant, numbers: dict[str, float], lost: tuple[str, ...]) -> s
     return (
         json_of({"schema": 1, "plant": plant.to_dict(), "numbers": numbers, "lost": list(lost)})
         + "\n"
+    )
+
+
+def head_of(tool: str, plant: Plant, lost: Sequence[str]) -> str:
+    """Head of a file of Python for a tool: units, and what it cannot hold."""
+    rows = "".join(f"# - {each}\n" for each in lost)
+    return (
+        f"# A joint of {tool}, made from a plant file by stiction. Efforts in\n"
+        f"# {plant.effort_unit}, speeds in {plant.position_unit}/s. What it cannot hold:\n{rows}"
     )

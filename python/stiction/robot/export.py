@@ -9,6 +9,7 @@ from xml.sax.saxutils import quoteattr
 from .._support.keys import choice
 from ..errors import InputError
 from ..export import Export, targets
+from ..export.mjcf import STIFF
 from ..export.speeds import greatest_speed
 from ..plant import Plant
 from ..plant.joint import joint_of, losses_of
@@ -85,11 +86,12 @@ def _mjcf(plants: Mapping[str, Plant], speed: float | None) -> Export:
     """Attributes of each joint, for the joints of the same names in a model."""
     numbers, lost = _numbers(plants, speed)
     lines = ["<!-- Put these attributes to the joints of the same names in your model. -->"]
+    stiff = " ".join(f'{name}="{" ".join(map(repr, own))}"' for name, own in STIFF.items())
     for name, plant in plants.items():
         damping, friction = numbers[f"{name}.damping"], numbers[f"{name}.friction"]
         lines.append(
             f'<joint name={quoteattr(name)} armature="{plant.inertia!r}" damping="{damping!r}" '
-            f'frictionloss="{friction!r}"/>'
+            f'frictionloss="{friction!r}" {stiff}/>'
         )
     text = "<mujoco>\n" + "\n".join(lines) + "\n</mujoco>\n"
     held = ("inertia of the rotors as armature", "Coulomb and viscous friction of each joint")

@@ -2,65 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ...errors import InputError
-from ...plant.joint import joint_of, losses_of, sidecar
+from ...plant.joint import body_losses, sidecar
 from ..made import Export
+from ..mjcf import STIFF, Attributes, Mjcf
 from ..runs import MotionRun, Windows, gravity_effort
 
 if TYPE_CHECKING:
-    from ...mujoco import Joint
     from ...plant import Plant
 
-SUMMARY = "MJCF of a joint (armature, damping, frictionloss) and of its motor (gear, limit)"
+SUMMARY = "MJCF of a joint and its motor: friction or LuGre, cogging, limit, delay, servo"
 LONGEST_STEP: Final = 1e-3
 """Of the simulator, s: a sample is divided into as few equal steps as are no longer."""
-CREEPS = (
-    "true stick: frictionloss of MuJoCo is a soft constraint, under which a joint at rest creeps"
-)
+
+ROUNDING: Final = 1e-6
+"""Of a sample."""
 
 
 def write(plant: Plant, speed: float) -> Export:
     """A model of one joint that turns or slides freely."""
-    joint, inertia = joint_of(plant, speed), float(plant.inertia)
-    lost = [*losses_of(plant, joint, limited=True), CREEPS]
-    held = ["inertia as armature", "Coulomb and viscous friction"]
-    limit = float(plant.drive.get("limit", np.inf))
-    limited = ""
-    if np.isfinite(limit):
-        limited = f' ctrllimited="true" ctrlrange="{-limit!r} {limit!r}"'
-        held.append("the limit of the drive")
-    if plant.servo:
+    made = Mjcf.of(plant, speed)
+    lost = list(made.lost)
+    if plant.servo and made.actuators[0][0] == "motor":
         lost.append("the controller of the servo: its motor is driven by current here")
-    if plant.gravity:
-        lost.append(
-            f"a pendulum of {plant.gravity:.6g} {plant.effort_unit}: give the body its mass"
-        )
-    if plant.weight:
-        lost.append(f"a weight of {plant.weight:.6g} {plant.effort_unit}: give the body its mass")
+    lost += body_losses(plant, armature=True)
     kind = "hinge" if plant.motion == "rotary" else "slide"
-    # A body has to have a mass of its own; the armature is the inertia.
+    stiff = STIFF if made.joint["frictionloss"] else {}
+    own = _attributes({**made.joint, **stiff})
+    actuators = "".join(
+        f'    <{tag} joint="joint" {_attributes(attributes)}/>\n'
+        for tag, attributes in made.actuators
+    )
+    # A body has to have a mass of its own; the armature is the inertia. Its centre is off the
+    # joint, or MuJoCo would scale the friction of a slide by that mass alone.
     text = (
         '<mujoco model="plant">\n  <option integrator="implicitfast" gravity="0 0 0"/>\n'
         "  <worldbody>\n    <body>\n"
-        f'      <joint name="joint" type="{kind}" axis="0 0 1" armature="{inertia!r}"'
-        f' damping="{joint.damping!r}" frictionloss="{joint.friction!r}"/>\n'
-        '      <inertial pos="0 0 0" mass="1e-9" diaginertia="1e-9 1e-9 1e-9"/>\n'
+        f'      <joint name="joint" type="{kind}" axis="0 0 1" {own}/>\n'
+        '      <inertial pos="1e-3 0 0" mass="1e-9" diaginertia="1e-9 1e-9 1e-9"/>\n'
         "    </body>\n  </worldbody>\n  <actuator>\n"
-        f'    <motor name="motor" joint="joint" gear="{plant.gain!r}"{limited}/>\n'
-        "  </actuator>\n</mujoco>\n"
+        f"{actuators}  </actuator>\n</mujoco>\n"
     )
-    numbers = {"armature": inertia, "damping": joint.damping, "frictionloss": joint.friction}
-    numbers["gear"] = plant.gain
+    numbers = made.joint | {"gear": plant.gain}
     kept = tuple(lost)
     files = {"joint.xml": text, "joint.json": sidecar(plant, numbers, kept)}
-    return Export("mujoco", files, tuple(held), kept, numbers)
+    return Export("mujoco", files, made.held, kept, numbers)
+
+
+def _attributes(numbers: Attributes) -> str:
+    """As XML has them."""
+
+    def text(value: str | float | tuple[float, ...]) -> str:
+        return " ".join(map(repr, value)) if isinstance(value, tuple) else f"{value}"
+
+    return " ".join(f'{name}="{text(value)}"' for name, value in numbers.items())
 
 
 def runs(made: Export, plant: Plant) -> tuple[MotionRun, MotionRun]:
@@ -70,21 +71,23 @@ def runs(made: Export, plant: Plant) -> tuple[MotionRun, MotionRun]:
     """
     from ... import mujoco as joints
 
-    if plant.servo:
-        raise InputError(
-            "mujoco: the input of a servo is a goal, and the motor that was written takes a "
-            "current; a model with the controller cannot be made from here"
-        )
     mujoco = joints.simulator()
 
     def native(windows: Windows) -> FloatArray:
         model = mujoco.MjModel.from_xml_string(made.files["joint.xml"])
-        return _gone(mujoco, plant, model, windows, lambda data, _: mujoco.mj_step(model, data))
+        led = _Led(plant, windows) if plant.friction.springy and model.na else None
+
+        def step(data: Any, row: int | None) -> None:
+            if row is not None and led is not None:
+                data.act[-1] = _bent(plant, led.state_at(row))
+            mujoco.mj_step(model, data)
+
+        return _gone(mujoco, plant, model, windows, step)
 
     def with_callback(windows: Windows) -> FloatArray:
         model = mujoco.MjModel.from_xml_string(made.files["joint.xml"])
         joint = joints.attach(model, "joint", plant)
-        led = _Led(joint, windows)
+        led = _Led(joint.plant, windows)
 
         def step(data: Any, row: int | None) -> None:
             if row is not None:
@@ -97,12 +100,20 @@ def runs(made: Export, plant: Plant) -> tuple[MotionRun, MotionRun]:
     return MotionRun("", native), MotionRun("with the callback", with_callback)
 
 
+def _bent(plant: Plant, state: Mapping[str, Any]) -> float:
+    """How far the bristles of MuJoCo's lugre are bent in a state of the law."""
+    if "deflection" in state:
+        return float(state["deflection"])
+    stiffness = plant.friction.model().parameters["initial_stiffness"]
+    return float(state["dry_friction"]) / stiffness
+
+
 class _Led:
     """A contact that is led along a measured motion, from one row to the next that is asked for."""
 
-    def __init__(self, joint: Joint, windows: Windows) -> None:
+    def __init__(self, plant: Plant, windows: Windows) -> None:
         self._windows, self._row = windows, 0
-        self._motor = replace(joint.plant, drive={"kind": "prescribed_motion"}).follower()
+        self._motor = replace(plant, drive={"kind": "prescribed_motion"}).follower()
         at = float(windows.position[0])
         self._motor.reset(at, 0.0, time=windows.clock, path=windows.path)
         self._contact = windows.contact
@@ -131,6 +142,12 @@ def _gone(
     for window, start in enumerate(windows.starts.tolist()):
         mujoco.mj_resetData(model, data)
         data.qpos[0], data.qvel[0] = windows.position[start], windows.velocity(start)
+        if model.actuator_delay[0] > 0.0:
+            number = int(model.actuator_history[0, 0])
+            ago = model.opt.timestep * np.arange(-number, 0)
+            before = start + np.floor(ago / windows.dt + ROUNDING).astype(int)
+            inputs = np.where(before < 0, 0.0, windows.input[np.maximum(before, 0)])
+            mujoco.mj_initCtrlHistory(model, data, 0, ago, inputs[:, None])
         row: int | None = start
         for sample in range(windows.length):
             data.ctrl[0] = windows.input[start + sample]

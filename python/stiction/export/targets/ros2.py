@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ...errors import InputError
-from ...plant.joint import Joint, joint_of, losses_of
+from ...plant.joint import Joint, body_losses, joint_of, losses_of
 from ..made import Export
 from ..runs import EffortRun, gravity_effort
 
@@ -103,7 +103,7 @@ def _sigmoid(joint: Joint, speed: float) -> dict[str, float]:
 
 def _losses(plant: Plant, joint: Joint, speed: float) -> tuple[str, ...]:
     """What is lost, a sentence each."""
-    own = list(losses_of(plant, joint, directed=True))
+    own = [*losses_of(plant, joint, directed=True), *body_losses(plant)]
     if joint.damping > 0.0:
         own.append(f"viscous friction: {joint.damping:.3g} {plant.effort_unit}·s/rad")
     own.append(

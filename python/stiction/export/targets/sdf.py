@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
 
-from ...plant.joint import joint_of, losses_of, sidecar
+from ...plant.joint import body_losses, joint_of, losses_of, sidecar
 from ..made import Export
 from ..runs import EffortRun, dry_friction
 
@@ -18,7 +18,11 @@ SUMMARY = "<dynamics> of an axis (Gazebo), and a JSON file with the rest"
 def write(plant: Plant, speed: float) -> Export:
     """A model of one joint; its ``<dynamics>`` goes into the axis that people have."""
     joint = joint_of(plant, speed)
-    lost = (*losses_of(plant, joint), "inertia of the rotor: an axis of SDFormat has none")
+    lost = (
+        *losses_of(plant, joint),
+        "inertia of the rotor: an axis of SDFormat has none",
+        *body_losses(plant),
+    )
     kind = "revolute" if plant.motion == "rotary" else "prismatic"
     text = (
         '<?xml version="1.0"?>\n<sdf version="1.9">\n  <model name="plant">\n'

@@ -1,8 +1,9 @@
-"""Tables for drives and controllers: effort over speed, effort over position, kS kV kA."""
+"""Tables for drives and controllers: effort over speed, effort over position, kS kV kA kG."""
 
 from __future__ import annotations
 
 import json
+import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -17,7 +18,7 @@ from ..runs import EffortRun
 if TYPE_CHECKING:
     from ...plant import Plant
 
-SUMMARY = "effort over speed and over position in at most 20 points (CSV, JSON), and kS kV kA"
+SUMMARY = "effort over speed and over position in at most 20 points (CSV, JSON), and kS kV kA kG"
 MOST: Final = 20
 """Points: what drives and controllers have room for."""
 
@@ -30,6 +31,13 @@ def write(plant: Plant, speed: float) -> Export:
         "kV": joint.damping / plant.gain,
         "kA": (0.0 if plant.prescribed_motion else plant.inertia) / plant.gain,
     }
+    if plant.gravity:
+        zero = plant.body.get("gravity_zero_rad")
+        # Of a cosine, whose angle is counted from where the arm is level.
+        gains["kG"] = plant.gravity / plant.gain
+        gains["level_rad"] = (0.0 if zero is None else zero.value) + 0.5 * math.pi
+    elif plant.weight:
+        gains["kG"] = plant.weight / plant.gain
     table = {
         "schema": 1,
         "speed": {"velocity": curves.speeds.tolist(), "effort": curves.friction.tolist()},
@@ -43,7 +51,8 @@ def write(plant: Plant, speed: float) -> Export:
         "position.csv": _csv(("position", "effort"), curves.places, curves.efforts),
         "table.json": json_of(table) + "\n",
     }
-    held = (*curves.held, "kS, kV and kA, in units of the input")
+    unit = "A" if plant.servo else "units of the input"
+    held = (*curves.held, f"kS, kV, kA and, where it hangs, kG, in {unit}")
     return Export("table", files, held, curves.lost, curves.numbers | gains)
 
 
