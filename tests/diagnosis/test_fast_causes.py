@@ -43,6 +43,15 @@ def test_windows_that_come_first_do_not_hide_a_shaft_that_rings(tmp_path):
     assert found.effects[0].decided
 
 
+@pytest.mark.slow
+def test_a_shaft_is_found_over_windows(tmp_path):
+    # What rings there moves the motor by a tenth of a count: at no compliance no slope shows it.
+    names, found = told(3011622, tmp_path, 300)
+    assert found.data["through"]["horizon"]
+    assert [cause.name for cause in found.effects] == names == ["shaft_compliance"]
+    assert found.effects[0].decided
+
+
 def test_single_moments_are_not_again_and_again():
     source = np.random.default_rng(1)
     null = source.standard_normal((2000, 20))

@@ -186,8 +186,7 @@ def _candidates(
             found_at = candidates(record, scales)
             if falls or not FALLS.isdisjoint(without):
                 found_at = [each for each in found_at if not each.shape.get(FALL)]
-            # Where rows are simulated a mass that swings bends the motion itself.
-            swings = base.plant.inertia > 0.0 and not evidence.simulated
+            swings = base.plant.inertia > 0.0
             tried += [each for each in found_at if swings or not each.resonance]
     return tried
 
