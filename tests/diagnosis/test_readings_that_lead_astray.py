@@ -170,6 +170,16 @@ def test_a_cause_is_taken_back_that_is_further_off_than_a_machine_that_hardly_mo
     assert not borne_out_in_motion(Search(models, [choice]), evidence).choices  # type: ignore[list-item]
 
 
+def test_recordings_that_decide_are_asked_without_those_that_are_fitted() -> None:
+    known = plant(**TRUE)
+    evidence = Evidence(known, recordings())
+    (plan,) = evidence.plans
+    deciding = evidence.rows_with(plan.held)
+    assert 0 < len(deciding) < len(evidence.shown)
+    own = evidence.residual(known, NOTHING, deciding)
+    assert np.array_equal(own, evidence.residual(known, NOTHING)[plan.held])
+
+
 def test_rows_that_test_stay_sealed_while_motion_is_asked() -> None:
     known = plant(**TRUE)
     evidence = Evidence(known, recordings(), through=Through())

@@ -195,20 +195,36 @@ class Evidence:
         """Results of some work on each item, in their order, on as many threads as allowed."""
         return list(steps(side_by_side(work, items), "recording", len(items)))
 
-    def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
-        """Weighted residual of all rows that may be looked at; shape (n,)."""
-        return np.concatenate(
-            self.each(lambda e: e.weight * e.residual(plant, nuisances)[e.mask], self.shown)
-        )
+    def residual(
+        self, plant: Plant, nuisances: Nuisances, some: Sequence[Rows] | None = None
+    ) -> FloatArray:
+        """Weighted residual of all rows that may be looked at, or of ``some``; shape (n,)."""
+        return self.stack(lambda rows: rows.residual(plant, nuisances), some)
 
-    def stack(self, work: Callable[[Rows], FloatArray]) -> FloatArray:
-        """Weighted columns of all rows that may be looked at, one recording under the other."""
+    def stack(
+        self, work: Callable[[Rows], FloatArray], some: Sequence[Rows] | None = None
+    ) -> FloatArray:
+        """Weighted columns of all rows that may be looked at, one recording under the other.
+
+        Or of ``some`` of them (see ``rows_with``).
+        """
 
         def columns(rows: Rows) -> FloatArray:
             found: FloatArray = rows.weight * work(rows)[rows.mask]
             return found
 
-        return np.concatenate(self.each(columns, self.shown))
+        return np.concatenate(self.each(columns, self.shown if some is None else some))
+
+    def rows_with(self, chosen: Mask) -> list[Rows]:
+        """The recordings that have some of the stacked rows, each with these alone."""
+        found = []
+        ends = np.cumsum([int(rows.mask.sum()) for rows in self.shown])
+        for rows, own in zip(self.shown, np.split(chosen, ends[:-1]), strict=True):
+            if own.any():
+                mask = rows.mask.copy()
+                mask[rows.mask] = own
+                found.append(rows.of(mask))
+        return found
 
     def weigh(self) -> None:
         """Carries the weights of train over to all other rows, by recording or by kind."""

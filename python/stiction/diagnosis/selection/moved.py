@@ -105,18 +105,19 @@ def _powers(models: list[Model], evidence: Evidence) -> _Powers | None:
     held = np.any([plan.held for plan in windows.plans], axis=0)
     block = windows.cells.block
     number = int(block.max()) + 1
+    judged = windows.rows_with(held)
 
     def power(left: FloatArray) -> FloatArray:
-        return np.bincount(block[held], left[held] ** 2, number).astype(np.float64)
+        return np.bincount(block[held], left**2, number).astype(np.float64)
 
     inertia = models[0].plant.inertia
-    steady = power(windows.stack(inertial_of))
+    steady = power(windows.stack(inertial_of, judged))
     found = []
     for model in models:
         plant = _as_stiff_as_shown(model.plant, windows.forms)
         # What another plant lacks would be in the states from which this one sets out.
-        stiffen(windows.forms, plant)
-        left = finite(windows.residual(plant, model.nuisances))
+        stiffen([rows.form for rows in judged], plant)
+        left = finite(windows.residual(plant, model.nuisances, judged))
         found.append(power(left * (inertia / plant.inertia)))
     return _Powers(found, steady)
 
