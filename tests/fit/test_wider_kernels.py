@@ -5,6 +5,7 @@ from tests.reference.pendulum_reference import DRY, INERTIA, WEIGHT, swung
 
 import stiction as st
 from stiction.diagnosis.screening.base import fit_baseline, fit_wider_baseline
+from stiction.fitting import first_pass
 from stiction.fitting.forms import residual_sentence as residual_told
 from stiction.plant import Plant
 
@@ -64,11 +65,22 @@ def test_a_diagnosis_says_that_kernels_were_widened():
 
 
 def test_kernels_that_the_recordings_cannot_hold_change_nothing(monkeypatch):
-    swings = recordings(error=1e-3)
-    narrow, base = fit_baseline(pendulum(), swings)
+    swings, plant, begun = recordings(error=1e-3), pendulum(), []
+    from_data = first_pass.fit_from_data
+
+    def fit_from_data(*given, **named):
+        begun.append(given)
+        return from_data(*given, **named)
+
+    _, base = fit_baseline(plant, swings)
     for module in ("fitting.first_pass", "diagnosis.screening.base"):
         monkeypatch.setattr(f"stiction.{module}.wider_of", lambda *_: 12.0)
     result = st.fit(pendulum(), st.Session(swings))
     assert result.success
     assert values(result)[0] < 0.8 * INERTIA
-    assert fit_wider_baseline(pendulum(), swings, narrow, base) is None
+    monkeypatch.setattr(first_pass, "fit_from_data", fit_from_data)
+    assert fit_wider_baseline(plant, swings, base, base) is None
+    # What was fitted through narrow kernels is known.
+    assert not begun
+    assert fit_wider_baseline(pendulum(), swings, base, base) is None
+    assert len(begun) == 1

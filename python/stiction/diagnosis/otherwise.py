@@ -50,7 +50,7 @@ def look_otherwise(
             # What was found last stands where all others have led the plant.
             earlier = [*look.selection.models[:0:-1], *look.selection.tried]
             final = first.valid_selection.models[-1]
-            seen = fit_baseline_over_windows(plant, recordings, look.evidence, final)
+            seen = fit_baseline_over_windows(plant, recordings, look.base, final)
         if seen is None:
             return first
         phase(_logger, "screening the effects again, with the plant simulated over windows")

@@ -289,7 +289,7 @@ def _testable(
         look = look._replace(selection=asked.search(look.evidence, look.base, look.null))
     if not look.selection.interrupted and shot is None:
         final = look.selection.models[-1]
-        wider = fit_wider_baseline(found.plant, session.recordings, look.evidence, final)
+        wider = fit_wider_baseline(found.plant, session.recordings, look.base, final)
         if wider is not None:
             phase(_logger, "screening the effects again, through wider kernels")
             look = search_again(look, wider, asked=asked) or look
@@ -336,7 +336,7 @@ def _first_look(
     def led_astray(first: Search) -> bool:
         last = first.models[-1]
         shot = fit_simulated_baseline(
-            found.plant, session.recordings, evidence, last, followed, first.tried
+            found.plant, session.recordings, base, last, followed, first.tried
         )
         shots.extend([] if shot is None else [shot])
         return bool(shots)
@@ -362,10 +362,12 @@ def _simulated(
     followed: list[Model],
 ) -> Searched:
     """The search over windows where readings lead astray: as ``shot`` tells, or at its end."""
-    seen, last = look.evidence, look.selection.models[-1]
+    last = look.selection.models[-1]
     cut_short = shot is not None
     if shot is None:
-        shot = fit_simulated_baseline(look.found.plant, session.recordings, seen, last, followed)
+        shot = fit_simulated_baseline(
+            look.found.plant, session.recordings, look.base, last, followed
+        )
     if shot is None:
         return look
     phase(_logger, "screening the effects again, with the plant simulated over windows")
@@ -376,4 +378,4 @@ def _simulated(
     if not cut_short or other is None:
         return look
     # Few windows may show nothing of any effect: that takes no name away.
-    return look._replace(selection=asked.search(seen, look.base, look.null))
+    return look._replace(selection=asked.search(look.evidence, look.base, look.null))

@@ -6,7 +6,7 @@ import logging
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Final, Generic, Protocol, TypeVar
+from typing import Final, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -31,7 +31,15 @@ from .pushes import Watch
 from .rows import Nuisances, Rows
 from .start import complete, free_paths, with_light_friction, yielding_starts
 
-__all__ = ["WORTH_WIDER", "FirstPass", "Seen", "first_pass", "fit_from_data", "remaining_share"]
+__all__ = [
+    "WORTH_WIDER",
+    "Along",
+    "FirstPass",
+    "Seen",
+    "first_pass",
+    "fit_from_data",
+    "remaining_share",
+]
 
 WORTH_CLINGING: Final = 0.9
 """Share of what else is left that a contact may leave at most which never breaks away."""
@@ -81,6 +89,14 @@ class Fitted(Protocol):
 S = TypeVar("S", bound=Seen)
 
 
+class Along(NamedTuple):
+    """Where a first pass ended along the readings, through the kernels that it began with."""
+
+    start: Plant
+    """What the data gave to start from, before anything was fitted."""
+    solution: Solution
+
+
 @dataclass(frozen=True)
 class FirstPass(Generic[S]):
     """Where the first pass ended.
@@ -108,6 +124,7 @@ def first_pass(
     most: int,
     wide: bool = True,
     windows: bool | None = None,
+    along: Along | None = None,
 ) -> FirstPass[S]:
     """Fit a plant to rows of the weak form, and simulated where these do not do.
 
@@ -130,18 +147,22 @@ def first_pass(
         Whether wider kernels may be tried.
     windows : bool, optional
         Whether a rigid contact is to be simulated over windows, where that is known already.
+    along : Along, optional
+        Where a pass over the same rows ended that was not simulated: what it did is not done again.
 
     Raises
     ------
     InputError
         No start along which the plant gives numbers.
     """
-    start, found = fit_from_data(plant, seen.train, most=most)
+    start, found = along or fit_from_data(plant, seen.train, most=most)
     known = FirstPass(seen, found, start)
     if found.interrupted:
         return known
     try:
-        known = _simulated(plant, known, found.variables.paths, again, most=most, windows=windows)
+        if along is None or windows:
+            paths = found.variables.paths
+            known = _simulated(plant, known, paths, again, most=most, windows=windows)
         if known.solution.interrupted or not wide:
             return known
         return _wider(plant, known, again, most=most)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from ...errors import InputError, NotEnoughData
-from ...fitting.first_pass import WORTH_WIDER, first_pass, remaining_share
+from ...fitting.first_pass import WORTH_WIDER, Along, FirstPass, first_pass, remaining_share
 from ...fitting.forms import Through, astray, wider_of, windows_of
 from ...fitting.minimise import MOST_EVALUATIONS
+from ...fitting.pushes import Watch
 from ...fitting.sign import sign_error
 from ...fitting.solve import fit_remainder, second_pass
 from ...plant import Plant
@@ -40,15 +42,15 @@ def fit_baseline(
     wide: bool = False,
     joined: bool = False,
     windows: bool | None = None,
-    along: Evidence | None = None,
+    along: Model | None = None,
 ) -> tuple[Evidence, Model]:
     """A session and the base that is fitted to its rows of train.
 
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
     recordings weighted by what the first left in each. Wider kernels (see ``wider_of``) are tried
     with ``wide`` alone: what a cause explains through narrow ones must not be averaged away.
-    ``joined`` as in ``Evidence``, ``windows`` as in ``first_pass``; ``along`` is the session as it
-    was seen through kernels before, for the same plant, its rows that test unopened.
+    ``joined`` as in ``Evidence``, ``windows`` as in ``first_pass``; ``along`` is a base
+    that was fitted along the readings before, of the same plant, its rows that test unopened.
 
     Returns
     -------
@@ -62,21 +64,44 @@ def fit_baseline(
     NotEnoughData
         As for ``Evidence``; a base that lost the inertia that the motion shows.
     """
-    evidence = Evidence(plant, recordings, joined=joined) if along is None else along.anew()
-    first = first_pass(
+    first = _first(plant, recordings, wide=wide, joined=joined, windows=windows, along=along)
+    return _second(plant, first)
+
+
+def _first(
+    plant: Plant,
+    recordings: Sequence[Recording],
+    *,
+    wide: bool,
+    joined: bool,
+    windows: bool | None,
+    along: Model | None,
+) -> FirstPass[Evidence]:
+    """The first pass of a base."""
+
+    def again(found: Plant, through: Through, watch: Watch) -> Evidence:
+        return Evidence(found, recordings, through=through, watch=watch, joined=joined)
+
+    return first_pass(
         plant,
-        evidence,
-        lambda found, through, watch: Evidence(
-            found, recordings, through=through, watch=watch, joined=joined
-        ),
+        Evidence(plant, recordings, joined=joined) if along is None else along.evidence.anew(),
+        again,
         most=MOST_EVALUATIONS,
         wide=wide,
         windows=windows,
+        along=None if along is None else along.along,
     )
+
+
+def _second(plant: Plant, first: FirstPass[Evidence]) -> tuple[Evidence, Model]:
+    """The base after its second pass, as `fit_baseline` returns it."""
     evidence = first.seen
     solution = second_pass(first.solution, evidence.train, most=MOST_EVALUATIONS)
     evidence.weigh()
-    base = Model(evidence, solution)
+    narrow = not (evidence.simulated or any(form.widened for form in evidence.forms))
+    # Slopes of a first pass are those of other weights.
+    ended = Along(first.start, replace(first.solution, slopes=None)) if narrow else None
+    base = Model(evidence, solution, along=ended)
     if not solution.interrupted:
         _refuse_what_does_not_move(evidence, first.start, base, plant)
     return evidence, base
@@ -85,7 +110,7 @@ def fit_baseline(
 def fit_wider_baseline(
     plant: Plant,
     recordings: Sequence[Recording],
-    evidence: Evidence,
+    narrow: Model,
     final: Model,
 ) -> tuple[Evidence, Model] | None:
     """The base through wider kernels, where these alone show the inertia; None elsewhere.
@@ -95,8 +120,8 @@ def fit_wider_baseline(
     plant : Plant
         As it is stated.
     recordings : sequence of Recording
-    evidence : Evidence
-        Through narrow kernels.
+    narrow : Model
+        The base through narrow kernels.
     final : Model
         With all causes that were found through these: where they explain what is left, nothing is
         to be averaged away.
@@ -106,17 +131,21 @@ def fit_wider_baseline(
     (Evidence, Model) or None
         After Ctrl-C whatever is there, and its solution is interrupted.
     """
+    evidence = narrow.evidence
     if wider_of(final.plant, final.nuisances, evidence.train, evidence.forms) is None:
         return None
     try:
-        other, base = fit_baseline(plant, recordings, wide=True)
+        along = _along(narrow, plant)
+        first = _first(plant, recordings, wide=True, joined=False, windows=None, along=along)
+        widened = any(form.widened for form in first.seen.forms)
+        if not (widened or first.solution.interrupted):
+            return None
+        other, base = _second(plant, first)
     except InputError:
         # What was found through narrow kernels stands.
         return None
     if base.solution.interrupted:
         return other, base
-    if not any(form.widened for form in other.forms):
-        return None
     left = remaining_share(final, evidence.train)
     return (other, base) if remaining_share(base, other.train) < WORTH_WIDER * left else None
 
@@ -124,7 +153,7 @@ def fit_wider_baseline(
 def fit_simulated_baseline(
     plant: Plant,
     recordings: Sequence[Recording],
-    evidence: Evidence,
+    base: Model,
     final: Model,
     followed: list[Model],
     tried: Sequence[Model] = (),
@@ -140,7 +169,7 @@ def fit_simulated_baseline(
     plant : Plant
         As it is stated.
     recordings : sequence of Recording
-    evidence : Evidence
+    base : Model
         Of the weak form.
     final : Model
         With all causes that were found.
@@ -155,6 +184,7 @@ def fit_simulated_baseline(
         The last are the models above as a simulation has them, what leaves least first. After
         Ctrl-C whatever is there, and the solution of the base is interrupted.
     """
+    evidence = base.evidence
     # Where the last cause makes the contact yield, the others tell nothing against that.
     horizon = windows_of(final.plant, evidence.forms, evidence.train)
     # The last model was tried as well, and fitted on to its end: that is the same one.
@@ -169,17 +199,21 @@ def fit_simulated_baseline(
         return None
     if len(begun) == 1 and any(model is begun[0] for model in followed):
         return None
-    known = evidence.plant is plant and not evidence.joined
-    narrow = known and not any(form.widened for form in evidence.forms)
     try:
         led = _led_astray(recordings, evidence, begun, Through(horizon=horizon), followed)
         if led is None:
             return None
-        along = evidence if narrow else None
-        return *fit_baseline(plant, recordings, windows=True, along=along), led
+        return *fit_baseline(plant, recordings, windows=True, along=_along(base, plant)), led
     except InputError:
         # What was found along the readings stands.
         return None
+
+
+def _along(base: Model, plant: Plant) -> Model | None:
+    """The base, where another one of a plant begins as it did."""
+    evidence = base.evidence
+    alike = evidence.plant is plant and not evidence.joined
+    return base if alike and base.along is not None else None
 
 
 def _forms_of(plant: Plant) -> list[tuple[str, tuple[str, ...]]]:
@@ -215,7 +249,7 @@ def _led_astray(
 
 
 def fit_baseline_over_windows(
-    plant: Plant, recordings: Sequence[Recording], evidence: Evidence, final: Model
+    plant: Plant, recordings: Sequence[Recording], base: Model, final: Model
 ) -> tuple[Evidence, Model] | None:
     """The base simulated over windows, whatever that leaves; None where it cannot be.
 
@@ -224,15 +258,16 @@ def fit_baseline_over_windows(
     plant : Plant
         As it is stated.
     recordings : sequence of Recording
-    evidence : Evidence
+    base : Model
         Of the weak form.
     final : Model
         The same fitted along the readings, with all causes that were found.
     """
+    evidence = base.evidence
     if windows_of(final.plant, evidence.forms, evidence.train) is None:
         return None
     try:
-        simulated = fit_baseline(plant, recordings, windows=True)
+        simulated = fit_baseline(plant, recordings, windows=True, along=_along(base, plant))
     except InputError:
         return None
     return simulated if simulated[0].simulated else None

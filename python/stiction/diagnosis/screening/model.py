@@ -12,6 +12,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ...catalogue import effects
+from ...fitting.first_pass import Along
 from ...fitting.leading import refit_windows
 from ...fitting.levenberg import FIRST_DAMPING
 from ...fitting.likeliest import likeliest
@@ -83,11 +84,14 @@ class Model:
     solution : Solution
     known : Nuisances
         Where starts of recordings that decide are looked for from.
+    along : Along or None
+        Where the first pass of a base ended; None of what is no base, and where that was simulated.
     """
 
     evidence: Evidence
     solution: Solution
     known: Nuisances = field(default_factory=Nuisances)
+    along: Along | None = None
 
     @property
     def plant(self) -> Plant:
