@@ -26,6 +26,7 @@ __all__ = [
     "called",
     "effects",
     "laws",
+    "least_squares",
     "played",
 ]
 
@@ -35,6 +36,22 @@ __profile__: Final[str]
 def called(law: str, given: str) -> str | None: ...
 def laws() -> list[dict[str, Any]]: ...
 def effects() -> list[dict[str, Any]]: ...
+def least_squares(
+    residual: Callable[[_Floats], Sequence[_Floats]],
+    slopes: Callable[[_Floats], tuple[Sequence[tuple[list[int], _Floats]], _Floats | None]],
+    begin: npt.ArrayLike,
+    low: npt.ArrayLike,
+    high: npt.ArrayLike,
+    scale: npt.ArrayLike,
+    *,
+    pulls: Sequence[tuple[int, float, float]],
+    most: int,
+    tolerance: float,
+    nothing: float,
+    straight: bool,
+    damping: float,
+    threads: int,
+) -> tuple[_Floats, float, bool, bool]: ...
 def adaptively_smoothed(
     readings: npt.ArrayLike, noise: float, halves: Sequence[int]
 ) -> _Floats: ...

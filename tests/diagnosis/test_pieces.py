@@ -301,8 +301,8 @@ def test_the_minimum_is_found_within_bounds_and_beyond_a_kink() -> None:
         (np.full(1, -9.0), np.full(1, 9.0)), np.ones(1), **keywords,
     )  # fmt: skip
     beyond = escape(
-        kinked,
-        lambda x: np.array([[1.0], [0.0], [0.0]]),
+        lambda x: float(kinked(x) @ kinked(x)),
+        np.ones((1, 1)),
         caught,
         (np.full(1, -9.0), np.full(1, 9.0)),
     )

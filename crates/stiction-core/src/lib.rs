@@ -21,6 +21,7 @@ pub mod integrate;
 pub mod interrupt;
 pub mod kernel;
 pub mod lanes;
+pub mod least_squares;
 mod logarithm;
 pub mod model;
 pub mod motor;

@@ -9,6 +9,7 @@ mod error;
 mod friction_model;
 mod interrupt;
 mod kernel;
+mod least_squares;
 mod motion;
 mod motor;
 mod real;
@@ -30,6 +31,8 @@ mod _native {
     use super::friction_model::FrictionModel;
     #[pymodule_export]
     use super::kernel::RowKernel;
+    #[pymodule_export]
+    use super::least_squares::least_squares;
     #[pymodule_export]
     use super::motion::Motion;
     #[pymodule_export]

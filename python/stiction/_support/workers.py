@@ -11,13 +11,14 @@ from typing import Final, TypeVar
 
 from .._native import CancelToken
 
-__all__ = ["side_by_side", "with_workers"]
+__all__ = ["side_by_side", "thread_count", "with_workers"]
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 # Threads of a pool do not see it: what they do side by side themselves goes one by one.
 _pool: Final[ContextVar[Executor | None]] = ContextVar("_pool", default=None)
+_number: Final[ContextVar[int]] = ContextVar("_number", default=1)
 
 
 @contextmanager
@@ -28,11 +29,17 @@ def with_workers(threads: int | None) -> Iterator[None]:
         yield
         return
     with ThreadPoolExecutor(number) as pool:
-        token = _pool.set(pool)
+        tokens = _pool.set(pool), _number.set(number)
         try:
             yield
         finally:
-            _pool.reset(token)
+            _pool.reset(tokens[0])
+            _number.reset(tokens[1])
+
+
+def thread_count() -> int:
+    """How many threads work side by side here."""
+    return _number.get()
 
 
 def side_by_side(

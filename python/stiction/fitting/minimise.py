@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
@@ -16,9 +16,9 @@ from .._support.progress import steps
 from .._support.workers import side_by_side
 from ..plant import Plant
 from ..residual.finite import finite
-from .levenberg import FIRST_DAMPING, Minimum, escape, levenberg_marquardt
+from .levenberg import FIRST_DAMPING, Minimum, Pull, Slopes, descend, escape, normal_matrix
 from .rows import Nuisances, Rows, Start, add_starts, numbers, start_quantities, timing_bound
-from .slopes import places_of, slopes
+from .slopes import Block, places_of, slope_block
 from .variables import Variables, records
 
 __all__ = [
@@ -74,6 +74,8 @@ INTERRUPTED: Final = "interrupted: these are the best values so far"
 
 _logger = logging.getLogger(__name__)
 
+Result = TypeVar("Result")
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -91,8 +93,8 @@ class Solution:
     evaluations : int
     power : float
         Σ w²·r² at the end.
-    slopes : numpy.ndarray or None, shape (n, p + 1 + starts)
-        Derivatives of the fitted rows at the end, as `slopes` gives them, where they are at hand.
+    slopes : sequence of Block or None
+        Derivatives of the fitted rows at the end, by recording, where they are at hand.
     """
 
     plant: Plant
@@ -105,7 +107,7 @@ class Solution:
     message: str
     evaluations: int
     power: float
-    slopes: FloatArray | None = None
+    slopes: Sequence[Block] | None = None
 
 
 def minimise(
@@ -334,8 +336,8 @@ class _Minimiser:
         given = add_starts(plant, rows) if nuisances is None else nuisances
         self.starts, self.leader = places_of(given), given.leader
         self.evaluations = 0
-        self._slopes: FloatArray | None = None
-        self._last: tuple[FloatArray, FloatArray] | None = None
+        self._slopes: list[Block] | None = None
+        self._last: tuple[FloatArray, list[FloatArray]] | None = None
         self._best: tuple[float, FloatArray] | None = None
         known = records(plant)
         neutral = [known[path].neutral if path in known else None for path in paths]
@@ -352,7 +354,7 @@ class _Minimiser:
             dtype=np.int64,
         )
         centres = np.log([float(neutral[k] or 1.0) for k in self.shrunk])
-        self.pull = 0.0
+        self.pulls: list[Pull] = []
         before = [(given.start(index) or {}).get(name, 0.0) for index, name in self.starts]
         self.full = np.concatenate([self.begin, [given.timing], before])
         self.usual = np.array([self._usual(name) for _, name in self.starts])
@@ -395,12 +397,16 @@ class _Minimiser:
         interrupted = False
         if len(self.shrunk):
             left = self.residual(begin)
-            self.pull = float(np.sqrt(SHRINKING * np.mean(left**2)))
+            rows = sum(map(len, left)) + len(self.shrunk)
+            pull = math.sqrt(SHRINKING * sum(float(own @ own) for own in left) / rows)
+            held = zip(self.shrunk.tolist(), self.centres.tolist(), self.widths, strict=True)
+            self.pulls = [(place, centre, pull / float(width)) for place, centre, width in held]
             self._best = None
         try:
             found = self.descend(begin, bounds, scale)
             for _ in range(escapes):
-                beyond = escape(self.residual, self.jacobian, found, bounds)
+                normal = normal_matrix(self.slopes(found.x), self.pulls, len(found.x))
+                beyond = escape(self.power, normal, found, bounds)
                 if beyond is None:
                     break
                 found = self.descend(beyond, bounds, scale)
@@ -434,12 +440,13 @@ class _Minimiser:
         self, begin: FloatArray, bounds: tuple[FloatArray, FloatArray], scale: FloatArray
     ) -> Minimum:
         """Follows the slopes from one point."""
-        return levenberg_marquardt(
+        return descend(
             self.residual,
-            self.jacobian,
+            self.slopes,
             begin,
             bounds,
             np.where(scale > 0.0, scale, 1.0),
+            pulls=self.pulls,
             most=self.most,
             tolerance=self.converged,
             nothing=self.rounding,
@@ -462,20 +469,22 @@ class _Minimiser:
         plant = self.variables.plant(self.plant, full[:count])
         return plant, Nuisances(float(full[count]), starts, self.leader)
 
-    def residual(self, full: FloatArray) -> FloatArray:
-        residual = self._left(full)
-        if len(self.shrunk):
-            residual = np.append(
-                residual, self.pull * (full[self.shrunk] - self.centres) / self.widths
-            )
-        self.evaluations += 1
-        power = float(residual @ residual)
-        if self._best is None or power < self._best[0]:
-            self._best = (power, np.array(full))
-        _logger.debug("evaluation %d: %g", self.evaluations, power)
-        return residual
+    def residual(self, full: FloatArray) -> list[FloatArray]:
+        """What is left of the rows of each recording."""
+        self.power(full)
+        return self._left(full)
 
-    def each(self, work: Callable[[Rows], FloatArray]) -> list[FloatArray]:
+    def power(self, full: FloatArray) -> float:
+        """Sum of squares, that of the pulls among it; remembers the best vector."""
+        power = sum(float(own @ own) for own in self._left(full))
+        power += sum((weight * (full[place] - centre)) ** 2 for place, centre, weight in self.pulls)
+        self.evaluations += 1
+        if self._best is None or power < self._best[0]:
+            self._best = (float(power), np.array(full))
+        _logger.debug("evaluation %d: %g", self.evaluations, power)
+        return float(power)
+
+    def each(self, work: Callable[[Rows], Result]) -> list[Result]:
         """Some work on every recording, side by side where it takes longer than handing it over."""
         done = side_by_side(work, self.rows) if self.long else map(work, self.rows)
         return list(steps(done, "recording", len(self.rows)))
@@ -486,24 +495,25 @@ class _Minimiser:
         samples = np.mean([len(each.form.position) for each in self.rows])
         return self.rows[0].form.simulated or bool(samples > LONG)
 
-    def _left(self, full: FloatArray) -> FloatArray:
+    def _left(self, full: FloatArray) -> list[FloatArray]:
         """What is left of the rows; kept, for a descent asks for its start once more."""
         if self._last is None or not np.array_equal(self._last[0], full):
             plant, nuisances = self.split(full)
-            rows = self.each(lambda each: each.weight * each.residual(plant, nuisances)[each.mask])
-            # A runaway trial must look bad, not break the optimiser.
-            left = finite(np.concatenate(rows), RUNAWAY)
-            self._last = np.array(full), left
+
+            def left(rows: Rows) -> FloatArray:
+                own = rows.residual(plant, nuisances)[rows.mask]
+                own *= rows.weight
+                # A runaway trial must look bad, not break the optimiser.
+                return finite(own, RUNAWAY)
+
+            self._last = np.array(full), self.each(left)
         return self._last[1]
 
-    def jacobian(self, full: FloatArray) -> FloatArray:
+    def slopes(self, full: FloatArray) -> Slopes:
+        """Slopes of each recording by the parameters, and of these by the vector."""
         plant, nuisances = self.split(full)
         count, paths = len(self.begin), self.variables.paths
-        self._slopes = np.vstack(self.each(lambda each: slopes(each, plant, paths, nuisances)))
-        found: FloatArray = self._slopes.copy()
-        found[:, :count] = self.variables.chain(found[:, :count], full[:count])
-        if len(self.shrunk):
-            pulled = np.zeros((len(self.shrunk), len(full)))
-            pulled[np.arange(len(self.shrunk)), self.shrunk] = self.pull / self.widths
-            found = np.vstack([found, pulled])
-        return found
+        self._slopes = self.each(lambda rows: slope_block(rows, plant, paths, nuisances))
+        chain = np.eye(len(full))
+        chain[:count, :count] = self.variables.chain(chain[:count, :count], full[:count])
+        return self._slopes, chain

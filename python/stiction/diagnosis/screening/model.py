@@ -19,7 +19,7 @@ from ...fitting.likeliest import likeliest
 from ...fitting.minimise import Solution, minimise
 from ...fitting.result import FitResult
 from ...fitting.rows import Nuisances, Rows, timing_bound
-from ...fitting.slopes import places_of, slopes
+from ...fitting.slopes import places_of, slopes, whole_matrix
 from ...fitting.solve import evaluate
 from ...fitting.start import free_paths
 from ...fitting.statistics import covariance, differ, jackknife
@@ -124,7 +124,8 @@ class Model:
             return self.columns[self.evidence.fitted]
         if self.solution.slopes is None:
             return self._slopes(self.evidence.train)
-        return self._timed(self.solution.slopes)
+        size = len(self.solution.variables.paths) + 1 + len(places_of(self.solution.nuisances))
+        return self._timed(whole_matrix(self.solution.slopes, size))
 
     def _slopes(self, rows: Sequence[Rows]) -> FloatArray:
         paths = self.solution.variables.paths
