@@ -10,6 +10,7 @@ import pytest
 
 import stiction as st
 from stiction import _native
+from stiction.fitting import levenberg
 
 from .rigs import contact, motor
 
@@ -142,6 +143,20 @@ def test_ctrl_c_ends_a_contact_that_is_moved(held):
 def test_ctrl_c_ends_a_smoothing(held):
     halves = list(range(0, 400))
     assert interrupted(lambda: _native.adaptively_smoothed(held[:300_000], 1e-6, halves)) < SOON
+
+
+def test_ctrl_c_ends_sums_over_rows():
+    columns, rows = 100, 2_000_000
+    left, slopes = np.zeros(rows), np.zeros((columns, rows))
+    free, every = np.full(columns, np.inf), list(range(columns))
+
+    def call():
+        levenberg.descend(
+            lambda x: [left], lambda x: ([(every, slopes)], None),
+            np.zeros(columns), (-free, free), np.ones(columns), most=9, tolerance=1e-9,
+        )  # fmt: skip
+
+    assert interrupted(call) < SOON
 
 
 def test_a_handler_of_ones_own_is_heard_and_may_let_the_call_go_on():
