@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis import builders
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
@@ -71,14 +71,10 @@ def test_a_wrong_inertia_is_told_with_what_it_would_be(times: float) -> None:
 
 
 def test_rows_that_are_simulated_and_numbers_that_are_free_are_not_asked() -> None:
-    plant = SimpleNamespace(body={"inertia": Parameter(1.0)}, prescribed_motion=False)
-    for simulated in (False, True):
-        model = SimpleNamespace(plant=plant, evidence=SimpleNamespace(simulated=simulated))
-        selection: Any = SimpleNamespace(models=[model], choices=[])
-        assert fixed_parameters(selection) == []
-        plant = SimpleNamespace(
-            body={"inertia": Parameter(1.0, fixed=True)}, prescribed_motion=not simulated
-        )
+    free, held = builders.plant(), builders.plant(body={"inertia": {"value": 1.0, "fixed": True}})
+    for own, simulated in ((free, False), (held, True)):
+        final = builders.model(builders.evidence(simulated=simulated), own)
+        assert fixed_parameters(builders.search(models=[final])) == []
 
 
 def test_what_a_cause_stands_for_is_no_rest_of_its_own() -> None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from tests.diagnosis.builders import cause, evidence, model, plant, search, trial
 from tests.diagnosis.second_base import fail_the_second_base
 
 import stiction as st
@@ -14,7 +14,8 @@ from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
 from stiction.diagnosis.findings.verdict import relatives
 from stiction.diagnosis.phrases import THE_LAW
-from stiction.diagnosis.records import Cause
+from stiction.diagnosis.records import CandidateRow
+from stiction.diagnosis.screening.model import Model
 from stiction.diagnosis.selection import left_open
 from stiction.diagnosis.selection.decide import degeneracy
 from stiction.errors import NotEnoughData
@@ -103,8 +104,6 @@ def test_two_levels_of_a_dry_contact_are_one_level_and_a_bias(hidden: str, tmp_p
 def test_a_bias_that_outweighs_the_level_or_bends_a_spring_is_told(
     law: str, bias: float, asked: bool, others: list[str]
 ) -> None:
-    record = SimpleNamespace(name="torque_bias", family="offset")
-    winner = SimpleNamespace(candidate=SimpleNamespace(record=record))
     plant = st.Plant.from_dict(
         {
             "drive": {"input": "torque_nm"},
@@ -112,31 +111,24 @@ def test_a_bias_that_outweighs_the_level_or_bends_a_spring_is_told(
             "effects": [{"name": "torque_bias", "bias": bias}],
         }
     )
-    selection: Any = SimpleNamespace(
-        choices=[SimpleNamespace(winner=winner, rivals=())],
-        models=[SimpleNamespace(plant=plant)],
-        rows={"direction_asymmetry": None} if asked else {},
-    )
+    row = CandidateRow("direction_asymmetry", 0.1, 0.05, 0.2, "")
+    winner = trial("torque_bias", refit=model(fitted=plant))
+    selection = search(winner, rows={row.name: row} if asked else {})
     assert relatives(selection, 0) == others
 
 
 def test_a_fit_that_lost_its_inertia_or_its_input_is_no_cause() -> None:
-    def model(inertia: float, given: float) -> Any:
-        plant = SimpleNamespace(inertia=inertia)
-        return SimpleNamespace(plant=plant, relative_input_power=given, evidence=evidence)
+    def fitted(inertia: float, given: float, *, simulated: bool = False) -> Model:
+        own = plant(body={"inertia": inertia})
+        return model(evidence(simulated=simulated), own, relative_input_power=given)
 
-    evidence = SimpleNamespace(simulated=False)
-    base = model(1.0, 1.0)
-    assert degeneracy(base, model(0.9, 1.0)) == ""
-    assert "the inertia" in degeneracy(base, model(0.1, 1.0))
+    base = fitted(1.0, 1.0)
+    assert degeneracy(base, fitted(0.9, 1.0)) == ""
+    assert "the inertia" in degeneracy(base, fitted(0.1, 1.0))
     # What is simulated without it misses the motion, which counts against it as it is.
-    evidence.simulated = True
-    assert degeneracy(base, model(0.1, 1.0)) == ""
-    assert "the effort itself" in degeneracy(base, model(1.0, 0.005))
-
-
-def cause(name: str, family: str) -> Cause:
-    return Cause(name, family, True, (), {}, None, "", "", "", "")
+    base = fitted(1.0, 1.0, simulated=True)
+    assert degeneracy(base, fitted(0.1, 1.0, simulated=True)) == ""
+    assert "the effort itself" in degeneracy(base, fitted(1.0, 0.005, simulated=True))
 
 
 def test_beside_a_law_that_nobody_stated_what_laws_have_is_not_decided() -> None:
@@ -159,12 +151,7 @@ def test_beside_a_law_that_nobody_stated_what_laws_have_is_not_decided() -> None
 def test_a_second_name_of_the_curve_over_speed_may_be_the_form_of_the_first(
     names: tuple[str, ...], strength: float, doubted: set[str]
 ) -> None:
-    choices = [
-        SimpleNamespace(winner=SimpleNamespace(name=name, candidate=SimpleNamespace(name=name)))
-        for name in names
-    ]
-    model = SimpleNamespace(strength=lambda _: strength)
-    selection: Any = SimpleNamespace(models=[model], choices=choices)
+    selection = search(*names, models=[model(strength=strength)])
     assert left_open.of_one_curve(selection) == doubted
 
 

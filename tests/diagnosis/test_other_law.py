@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import cause, model, number, search
 from tests.reference.session_reference import make_session
 
 import stiction as st
@@ -33,11 +31,11 @@ def test_only_what_the_law_lacks_is_named_of_a_machine_with_another_law() -> Non
     assert [cause.name for cause in found.effects if cause.decided] == ["reverse_point_memory"]
     assert found.verdict in ("ambiguous", "unexplained")
     reasons = {row.name: row.reason for row in found.candidates}
-    for cause in found.effects[1:]:
-        assert not cause.decided
-        either = {0: "perhaps", 1: "either"}.get(len(cause.look_alikes), "one of")
-        assert f"{either} {cause.name}" in found.sentence
-        assert "left without a name" in reasons[cause.name]
+    for each in found.effects[1:]:
+        assert not each.decided
+        either = {0: "perhaps", 1: "either"}.get(len(each.look_alikes), "one of")
+        assert f"{either} {each.name}" in found.sentence
+        assert "left without a name" in reasons[each.name]
 
 
 @pytest.mark.parametrize(
@@ -55,9 +53,8 @@ def test_only_what_the_law_lacks_is_named_of_a_machine_with_another_law() -> Non
 def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
     coordinate: str, share: float, little: set[str]
 ) -> None:
-    models = [SimpleNamespace(blocks=(None, np.full(4, p))) for p in (25.0, 5.0, 3.0)]
-    names = [SimpleNamespace(winner=SimpleNamespace(name=each)) for each in ("first", "second")]
-    selection: Any = SimpleNamespace(models=models, choices=names)
+    models = [model(blocks=(np.ones(4), np.full(4, p))) for p in (25.0, 5.0, 3.0)]
+    selection = search("first", "second", models=models)
     assert left_open.outweighed_names(selection, [Unexplained(coordinate, share)]) == little
     assert left_open.outweighed_names(selection, []) == set()
 
@@ -66,34 +63,31 @@ def test_a_name_that_took_less_than_twice_what_is_left_is_not_decided(
 def test_a_name_of_which_no_number_is_known_is_decided_by_its_strength_alone(
     strength: float, sure: bool
 ) -> None:
-    def cause(name: str, *intervals: tuple[float, float]) -> Cause:
-        numbers: Any = {
-            f"effects.{name}.{k}": SimpleNamespace(ci95=ci95) for k, ci95 in enumerate(intervals)
-        }
-        return Cause(name, "family", True, (), numbers, None, "", "", "", "")
+    def known_to(name: str, *intervals: tuple[float, float]) -> Cause:
+        numbers = {f"effects.{name}.{k}": number(ci95=each) for k, each in enumerate(intervals)}
+        return cause(name, parameters=numbers)
 
     open_, known = (-1.0, 2.0), (1.0, 2.0)
-    first = cause("creep_hardening", open_, open_)
-    second = cause("torque_bias", known)
-    third = cause("drive_deadband", open_)
-    fourth = cause("cogging", open_, known)
-    causes = [first, second, third, fourth, cause("warm_up", open_, open_)]
+    first = known_to("creep_hardening", open_, open_)
+    second = known_to("torque_bias", known)
+    third = known_to("drive_deadband", open_)
+    fourth = known_to("cogging", open_, known)
+    causes = [first, second, third, fourth, known_to("warm_up", open_, open_)]
     strengths = {"creep_hardening": strength, "drive_deadband": 5.0, "warm_up": 60.0}
-    model = SimpleNamespace(strength=lambda candidate: strengths[candidate])
-    choices = [SimpleNamespace(winner=SimpleNamespace(candidate=each.name)) for each in causes]
-    selection: Any = SimpleNamespace(models=[model], choices=choices)
+    names = [each.name for each in causes]
+    selection = search(*names, models=[model(strength=strengths)])
     found = left_open.leave_zero_open(selection, causes)
     assert [each.decided for each in found] == [sure, True, False, True, True]
 
 
 def test_a_known_speed_says_nothing_of_the_strength() -> None:
     def lag(excess: tuple[float, float]) -> Cause:
-        numbers: Any = {
-            "effects.frictional_lag.excess": SimpleNamespace(ci95=excess),
-            "effects.frictional_lag.velocity": SimpleNamespace(ci95=(1.0, 1.1)),
-            "effects.frictional_lag.time": SimpleNamespace(ci95=(0.6, 1.2)),
+        numbers = {
+            "effects.frictional_lag.excess": number(ci95=excess),
+            "effects.frictional_lag.velocity": number(ci95=(1.0, 1.1)),
+            "effects.frictional_lag.time": number(ci95=(0.6, 1.2)),
         }
-        return Cause("frictional_lag", "family", True, (), numbers, None, "", "", "", "")
+        return cause("frictional_lag", parameters=numbers)
 
     assert lag((-3.9, 12.5)).doubtful
     assert not lag((3.9, 12.5)).doubtful

@@ -6,11 +6,11 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.diagnosis import builders
 
 import stiction as st
 from stiction.catalogue import EffectRecord
@@ -32,6 +32,7 @@ from stiction.diagnosis.screening.candidates import (
 )
 from stiction.diagnosis.screening.model import LEAST_GIVEN, Model, fit_model, with_effect
 from stiction.diagnosis.screening.regression import project
+from stiction.diagnosis.screening.screen import Score
 from stiction.diagnosis.selection import choose as choosing
 from stiction.diagnosis.selection import listing
 from stiction.diagnosis.selection.choose import Choice, choose, strangers
@@ -164,9 +165,8 @@ def test_a_fold_does_not_go_where_the_fit_to_all_rows_may_not() -> None:
     plan = Plan(fit, whole & ~fit, whole)
 
     def held(residual: np.ndarray) -> np.ndarray:
-        evidence: Any = SimpleNamespace(fitted=whole)
-        model = Model(evidence, SimpleNamespace())  # type: ignore[arg-type]
-        model.__dict__.update(residual=residual, columns=columns)
+        session = builders.evidence(fitted=whole)
+        model = builders.model(session, residual=residual, columns=columns)
         return model.holdout_residual(plan)
 
     # A parameter at its bound leaves a slope that no fit may take: nor may a fold.
@@ -326,19 +326,15 @@ def tried(
     gain: float = 0.3,
 ) -> Trial:
     """A trial that explains what all others explain."""
-    blocks = (np.linspace(1.0, 2.0, 30), np.linspace(2.0, 1.0, 30))
-    candidate = SimpleNamespace(
-        name=f"{worth}",
-        parameters=parameters,
-        shape={},
-        form=f"{worth}",
-        record=SimpleNamespace(family=family, name=f"{worth}", shapes=(), gains=()),
+    own = builders.score(
+        builders.candidate(f"{worth}", parameters=parameters, family=family),
+        0.1,
+        heldout=0.1,
+        contributed=np.ones(5),
     )
-    score = SimpleNamespace(
-        signature=np.ones(5), candidate=candidate, score=0.1, threshold=0.05, heldout=0.1
-    )
-    model = SimpleNamespace(blocks=blocks)
-    return Trial(score, model, gain, 3.0, worth, 9.0, 0.1, reason, by_blocks, uneven)
+    refit = builders.model(blocks=(np.linspace(1.0, 2.0, 30), np.linspace(2.0, 1.0, 30)))
+    told = {"gain": gain, "z": 3.0, "by_blocks": by_blocks, "uneven": uneven}
+    return builders.trial(own, worth, reason, refit=refit, **told)
 
 
 def test_no_stranger_is_named_where_what_explains_most_imitates() -> None:
@@ -397,19 +393,12 @@ def test_a_candidate_encompasses_another_where_only_one_has_something_left_for_t
 ) -> None:
     one, other = tried(1.0, 1), tried(0.9, 1)
 
-    def score(of: Trial, value: float, heldout: float) -> Any:
-        named = SimpleNamespace(name=of.name, form=of.name)
-        return SimpleNamespace(candidate=named, score=value, threshold=0.02, heldout=heldout)
+    def score(of: Trial, value: float, heldout: float) -> Score:
+        return builders.score(of.candidate, value, threshold=0.02, heldout=heldout)
 
-    class Scores:
-        """What each model leaves for the other candidate."""
-
-        _score = Screening._score
-
-        def _forms(self, model: Any) -> list[Any]:
-            return [score(one, *left) if model is other.model else score(other, *more)]
-
-    assert Screening.encompasses(Scores(), one, other) is told
+    # What each model leaves for the other candidate.
+    kept = [(other.model, [score(one, *left)]), (one.model, [score(other, *more)])]
+    assert Screening.encompasses(replace(builders.screening(), kept=kept), one, other) is told
 
 
 def test_only_what_passed_by_itself_leaves_waves_aside(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -502,7 +491,7 @@ def test_blocks_have_to_be_certain_of_what_is_near(
     scatter = np.tile([-0.3, 0.3], 15)
     winner, other = tried(1.0, 1), tried(worth, 1)
     left = tuple(block + more + scatter for block in winner.model.blocks)
-    other = replace(other, model=SimpleNamespace(blocks=(left[0], winner.model.blocks[1])))
+    other = replace(other, model=builders.model(blocks=(left[0], winner.model.blocks[1])))
     chosen = choose([winner, other])
     assert chosen is not None
     assert (chosen.winner, chosen.decided) == (winner, decided)
@@ -510,7 +499,7 @@ def test_blocks_have_to_be_certain_of_what_is_near(
 
 def test_relatives_named_beside_each_other_are_not_decided() -> None:
     trials = [tried(1.0, 1, family=family) for family in ("angle", "slow", "angle")]
-    selection = SimpleNamespace(choices=[Choice(trial, ()) for trial in trials])
+    selection = builders.search(*trials)
     assert [len(relatives(selection, k)) for k in range(3)] == [1, 0, 1]
 
 
@@ -521,7 +510,7 @@ def test_what_may_be_a_relative_instead_leaves_a_name_undecided() -> None:
         for worth, family in ((1.0, "offset"), (0.9, "wave"), (0.8, "wave"), (0.7, "slow"))
     )
     choices = [Choice(constant, (weight,)), Choice(cogging, ()), Choice(slow, ())]
-    selection: Any = SimpleNamespace(choices=choices)
+    selection = replace(builders.search(), choices=choices)
     assert [relatives(selection, k) for k in range(3)] == [[], ["0.9"], []]
 
 
@@ -616,8 +605,7 @@ def test_a_drive_that_gives_nothing_leaves_nothing_to_explain() -> None:
             true_plant(),
             effects=(Effect("drive_deadband", {"deadband": Parameter(deadband)}),),
         )
-        solution = SimpleNamespace(plant=plant, nuisances=Nuisances())
-        return Model(evidence, solution).relative_input_power  # type: ignore[arg-type]
+        return builders.model(evidence, plant).relative_input_power
 
     assert given(0.01) == 1.0
     assert 0.0 < given(0.4) < 0.5

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from tests.diagnosis.builders import model, search
 from tests.diagnosis.second_base import fail_the_second_base
 
 import stiction as st
@@ -42,8 +42,7 @@ def sooner(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def rival(law: str, beside: float) -> Rival:
-    own: Any = SimpleNamespace(solution=SimpleNamespace(variables=SimpleNamespace(paths=())))
-    return Rival(law, False, own, beside=beside, z=5.0)
+    return Rival(law, False, model(paths=()), beside=beside, z=5.0)
 
 
 @pytest.mark.parametrize(
@@ -54,13 +53,13 @@ def test_a_law_is_outdone_where_another_leaves_a_hundredth(
 ) -> None:
     rivals = [rival(law, each) for law, each in zip(("coulomb", "lugre"), beside, strict=False)]
     monkeypatch.setattr(restated, "rivals_of", lambda *_, **__: rivals)
-    found: Any = SimpleNamespace(interrupted=False, models=[None, None])
+    found = search("drive_deadband")
     assert restated.is_outdone(found) is outdone
 
 
 def test_half_a_comparison_outdoes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(restated, "rivals_of", lambda *_, **__: [])
-    found: Any = SimpleNamespace(interrupted=True, models=[None])
+    found = search(interrupted=True)
     with pytest.raises(KeyboardInterrupt):
         restated.is_outdone(found)
 

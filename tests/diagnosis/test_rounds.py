@@ -3,80 +3,73 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.diagnosis.builders import (
+    EFFECTS,
+    candidate,
+    cells,
+    evidence,
+    model,
+    plant,
+    score,
+    screening,
+    search,
+    trial,
+)
+from tests.diagnosis.builders import cause as cause_of
 
-from stiction.catalogue import effects
 from stiction.diagnosis.adequacy.exact_forms import doubt_geometry
-from stiction.diagnosis.records import CandidateRow, Cause, Unexplained
+from stiction.diagnosis.data.evidence import Plan
+from stiction.diagnosis.records import CandidateRow, Unexplained
 from stiction.diagnosis.screening import block_gains
+from stiction.diagnosis.screening.model import Model, fit_model
 from stiction.diagnosis.selection import decide, rounds, together
 from stiction.diagnosis.selection.beside import doubt_by_forms, stands_out
 from stiction.diagnosis.selection.choose import Choice
 from stiction.diagnosis.selection.decide import Trial
 from stiction.diagnosis.selection.restarts import from_the_first
 from stiction.diagnosis.selection.search import Search
-from stiction.diagnosis.selection.trials import Screening
 
 BLOCKS = np.ones(30), np.ones(30)
+# Hooks of what is late and of what swings.
+KINDS = {"late": ("input delay",), "swings": ("second mass",)}
 
 
-def trial(
+def tried(
     name: str,
     worth: float,
     reason: str = "",
     *,
     family: str = "",
-    by_blocks: bool = False,
+    kind: str = "",
     contributed: Any = (1.0, 0.0),
     wave: bool = False,
+    value: float = 0.3,
+    threshold: float = 0.05,
+    heldout: float = 0.2,
+    power: float = 1.0,
+    **stated: Any,
 ) -> Trial:
-    shapes = (SimpleNamespace(scale="order"),) if wave else ()
-    record = SimpleNamespace(family=family or name, name=name, shapes=shapes, second=(), gains=())
-    record.late = record.swings = record.limits = False
-    candidate: Any = SimpleNamespace(name=name, parameters=1, record=record, shape={}, form=name)
-    score: Any = SimpleNamespace(
-        signature=np.asarray(contributed, dtype=float),
-        candidate=candidate,
-        score=0.3,
-        threshold=0.05,
-        heldout=0.2,
-        testable=True,
+    """A trial of an effect of this name alone; ``power`` is what its model leaves."""
+    told: dict[str, Any] = {"family": family or name}
+    told |= {"hooks": KINDS[kind]} if kind else {}
+    told |= {"shapes": EFFECTS["cogging"].shapes} if wave else {}
+    own = score(
+        candidate(name, **told),
+        value,
+        threshold=threshold,
+        heldout=heldout,
+        contributed=contributed,
     )
-    model: Any = SimpleNamespace(blocks=BLOCKS, plant=SimpleNamespace(effects=()), name=name)
-    return Trial(score, model, 0.2, 1.0, worth, 9.0, 0.1, reason, by_blocks)
+    refit = model(name=name, blocks=BLOCKS, power=power)
+    return trial(own, worth, reason, refit=refit, **stated)
 
 
-class Bench:
-    """What the rounds ask of a screening: answers by the name of the model."""
-
-    evidence = SimpleNamespace(loop=False, simulated=False)
-    earlier = ()
-
-    def __init__(self, after: dict[str, list[Trial]]) -> None:
-        self.after = after
-
-    def scores(self, model: Any) -> list[Any]:
-        return [each.score for each in self.after.get(model.name, [])]
-
-    def trial(self, model: Any, score: Any, others: Any = ()) -> Trial:
-        return next(t for t in self.after[model.name] if t.name == score.candidate.name)
-
-    def may_count(self, score: Any) -> bool:
-        own: Any = self
-        return Screening.may_count(own, score)
-
-    def from_where(self, model: Any, score: Any, lead: Any) -> None:
-        return None
-
-    def contribution(self, score: Any, model: Any) -> Any:
-        return score.signature
-
-    def encompasses(self, one: Trial, other: Trial) -> bool:
-        return False
+def base(power: float = 1.0) -> Model:
+    return model(name="base", power=power, blocks=BLOCKS)
 
 
 SPREAD = "its held-out gain is 1.96 standard errors, below 2.00"
@@ -97,24 +90,15 @@ SPREAD = "its held-out gain is 1.96 standard errors, below 2.00"
     ],
 )
 def test_causes_that_hide_each_other_pass_together(
-    monkeypatch: pytest.MonkeyPatch,
-    uneven: float,
-    beside_first: str,
-    beside_second: str,
-    passes: bool,
+    uneven: float, beside_first: str, beside_second: str, passes: bool
 ) -> None:
     first, second = (
-        replace(trial(name, worth, SPREAD, by_blocks=uneven == 0.0), uneven=uneven)
+        tried(name, worth, SPREAD, by_blocks=uneven == 0.0, uneven=uneven)
         for name, worth in (("a", 1.0), ("b", 0.5))
     )
-    bench: Any = Bench(
-        {"a": [trial("b", 2.0, beside_first)], "b": [trial("a", 2.5, beside_second)]}
-    )
-    alone = SimpleNamespace(name="b")
-    monkeypatch.setattr(together, "whole_fit", lambda *_: alone)
-    monkeypatch.setattr(together, "without_effect", lambda plant, _: plant)
-    base: Any = SimpleNamespace(nuisances=None)
-    choice = together.pass_together(bench, base, [first, second])
+    after = {"a": [tried("b", 2.0, beside_first)], "b": [tried("a", 2.5, beside_second)]}
+    bench = screening(after, fits=lambda _: model(name="b"))
+    choice = together.pass_together(bench, base(), [first, second])
     assert (choice is not None) == passes
     if choice is not None:
         assert choice.winner.name == "a"
@@ -122,51 +106,38 @@ def test_causes_that_hide_each_other_pass_together(
 
 
 @pytest.mark.parametrize("better", [False, True])
-def test_what_was_accepted_beside_a_base_that_is_replaced_is_decided_again(
-    monkeypatch: pytest.MonkeyPatch, better: bool
-) -> None:
-    monkeypatch.setattr(rounds, "_renew", lambda evidence, found, lead: better)
+def test_what_was_accepted_beside_a_base_that_is_replaced_is_decided_again(better: bool) -> None:
+    # The base alone, fitted from where a trial led, leaves less than it did, or as much.
+    power = fit_model(evidence(), plant()).power
+    found = Search([base(2.0 * power if better else power)])
     before = CandidateRow("stribeck", 0.1, 0.2, None, "others explain more")
-    later = {"stribeck": replace(before, reason="accepted")}
-    found: Any = SimpleNamespace(rows=later, blind=[1, 2])
-    lead: Any = None
-    assert rounds._renewed(lead, found, [lead], ({"stribeck": before}, [1])) is better
+    found.rows = {"stribeck": replace(before, reason="accepted")}
+    found.blind = [EFFECTS["cogging"], EFFECTS["run_in"]]
+    told = {"stribeck": before}, [EFFECTS["cogging"]]
+    lead = tried("a", 1.0)
+    assert rounds._renewed(lead.model.evidence, found, [lead], told) is better
     assert (found.rows["stribeck"] is before) is better
-    assert found.blind == ([1] if better else [1, 2])
+    assert [each.name for each in found.blind] == ["cogging", "run_in"][: 1 if better else 2]
 
 
 def test_a_refit_that_freed_the_base_leads_to_a_better_one_before_any_name() -> None:
-    freed = replace(trial("a", 2.0, "the base was freed"), freed=True)
-    bench: Any = Bench({"base": [freed, trial("b", 1.0)]})
-    base: Any = SimpleNamespace(name="base")
-    choice, leads, _ = rounds._round(bench, Search([base]), set())
+    freed = tried("a", 2.0, "the base was freed", freed=True)
+    bench = screening({"base": [freed, tried("b", 1.0)]})
+    choice, leads, _ = rounds._round(bench, Search([base()]), set())
     assert choice is not None
     assert choice.winner.name == "b"
     assert [lead.name for lead in leads] == ["a", "b"]
 
 
-class Asked(Bench):
-    """Tells which candidates were refitted."""
-
-    def __init__(self, after: dict[str, list[Trial]]) -> None:
-        super().__init__(after)
-        self.refitted: list[str] = []
-
-    def trial(self, model: Any, score: Any, others: Any = ()) -> Trial:
-        self.refitted.append(score.candidate.name)
-        return super().trial(model, score, others)
-
-
-def scored(name: str, score: float, along: tuple[float, float], **kinds: Any) -> Trial:
+def scored(name: str, value: float, along: tuple[float, float], **kinds: Any) -> Trial:
     """A trial whose score is this, of a model that explains half of the power."""
-    one = trial(name, 2.0 * score, contributed=along, **kinds)
-    one.score.score = score
-    one.model.power = 0.5
-    return one
+    reason = kinds.pop("reason", "")
+    known = {"contributed": along, "value": value, "power": 0.5, **kinds}
+    return tried(name, 2.0 * value, reason, **known)
 
 
 @pytest.mark.parametrize(
-    ("along", "score", "family", "refused", "refitted"),
+    ("along", "value", "family", "refused", "refitted"),
     [
         ((0.0, 1.0), 0.3, "", "", ["a"]),
         # It may be the same cause, a relative of it, or more of one than what passed.
@@ -178,12 +149,11 @@ def scored(name: str, score: float, along: tuple[float, float], **kinds: Any) ->
     ],
 )
 def test_what_explains_another_part_and_less_waits_for_the_next_round(
-    along: tuple[float, float], score: float, family: str, refused: str, refitted: list[str]
+    along: tuple[float, float], value: float, family: str, refused: str, refitted: list[str]
 ) -> None:
-    first = replace(scored("a", 0.5, (1.0, 0.0)), reason=refused)
-    bench: Any = Asked({"base": [first, scored("b", score, along, family=family)]})
-    base: Any = SimpleNamespace(name="base", power=1.0)
-    found = Search([base])
+    first = scored("a", 0.5, (1.0, 0.0), reason=refused)
+    bench = screening({"base": [first, scored("b", value, along, family=family)]})
+    found = Search([base()])
     rounds._round(bench, found, set())
     assert bench.refitted == refitted
     if refitted == ["a"]:
@@ -191,7 +161,7 @@ def test_what_explains_another_part_and_less_waits_for_the_next_round(
 
 
 @pytest.mark.parametrize(
-    ("score", "kind", "simulated", "named", "refitted"),
+    ("value", "kind", "simulated", "named", "refitted"),
     [
         (0.004, "", False, True, False),
         (0.007, "", False, True, True),
@@ -205,25 +175,15 @@ def test_what_explains_another_part_and_less_waits_for_the_next_round(
     ],
 )
 def test_what_cannot_come_to_what_counts_is_not_refitted(
-    score: float,
-    kind: str,
-    simulated: bool,
-    named: bool,
-    refitted: bool,
-    monkeypatch: pytest.MonkeyPatch,
+    value: float, kind: str, simulated: bool, named: bool, refitted: bool
 ) -> None:
-    slight = replace(scored("b", score, (1.0, 0.0)), reason="gains 1 % on rows held out")
-    slight.score.threshold, slight.score.heldout = 0.001, 0.0015
-    record: Any = slight.candidate.record
-    record.late, record.swings = kind == "late", kind == "swings"
-    bench: Any = Asked({"base": [slight]})
-    bench.evidence = SimpleNamespace(loop=False, simulated=simulated)
-    monkeypatch.setattr(rounds, "pass_together", lambda *_: None)
-    monkeypatch.setattr(rounds, "doubt_by_forms", lambda *_: "")
-    base: Any = SimpleNamespace(name="base", power=1.0)
-    row = CandidateRow("b", score, 0.001, 0.0015, "others explain more")
-    choices = [Choice(trial("a", 1.0), ())] if named else []
-    found = Search([base], choices, {"b": row})
+    little = "gains 1 % on rows held out"
+    own = {"kind": kind, "threshold": 0.001, "heldout": 0.0015}
+    slight = scored("b", value, (1.0, 0.0), reason=little, **own)
+    bench = screening({"base": [slight]}, session=evidence(simulated=simulated))
+    row = CandidateRow("b", value, 0.001, 0.0015, "others explain more")
+    choices = [Choice(tried("a", 1.0), ())] if named else []
+    found = Search([base()], choices, {"b": row})
     choice, _, _ = rounds._round(bench, found, set())
     assert choice is None
     assert bench.refitted == (["b"] if refitted else [])
@@ -238,23 +198,18 @@ def test_what_passes_with_all_that_it_promised_begins_nowhere_else(
     explained: float, refused: str, again: list[str]
 ) -> None:
     first = scored("a", 0.4, (1.0, 0.0))
-    second = replace(scored("b", 0.3, (1.0, 0.1)), explained=explained, reason=refused)
-    begun: list[str] = []
-    bench: Any = SimpleNamespace(
-        from_where=lambda base, score, lead: begun.append(score.candidate.name)
-    )
+    second = scored("b", 0.3, (1.0, 0.1), explained=explained, reason=refused)
+    bench = screening()
     trials = [first, second]
-    base: Any = None
-    assert from_the_first(bench, base, [t.score for t in trials], trials, first) == trials
-    assert begun == again
+    assert from_the_first(bench, base(), [t.score for t in trials], trials, first) == trials
+    assert bench.begun == again
 
 
 def test_what_explains_less_than_another_is_no_first_of_two() -> None:
-    spread = trial("a", 0.5, SPREAD, by_blocks=True)
-    base: Any = SimpleNamespace(nuisances=None)
-    bench: Any = Bench({"a": [trial("b", 2.0)]})
-    assert together.pass_together(bench, base, [spread, trial("c", 1.0, "imitates")]) is None
-    assert together.pass_together(bench, base, []) is None
+    spread = tried("a", 0.5, SPREAD, by_blocks=True)
+    bench = screening({"a": [tried("b", 2.0)]})
+    assert together.pass_together(bench, base(), [spread, tried("c", 1.0, "imitates")]) is None
+    assert together.pass_together(bench, base(), []) is None
 
 
 @pytest.mark.parametrize(
@@ -273,13 +228,11 @@ def test_what_explains_less_than_another_is_no_first_of_two() -> None:
 def test_a_small_relative_of_a_named_cause_may_be_its_rest(
     family: str, worth: float, along: tuple[float, float], wave: bool, kept: bool
 ) -> None:
-    named = trial("a", 1.0, family="contact")
-    later = trial("b", worth, family=family, contributed=along, wave=wave)
+    named = tried("a", 1.0, family="contact")
+    later = tried("b", worth, family=family, contributed=along, wave=wave)
     row = CandidateRow("b", 0.3, 0.05, 0.2, "accepted")
-    models: list[Any] = ["base", "with a", "with both"]
-    found = Search(models, [Choice(named, ()), Choice(later, ())], {"b": row})
-    bench: Any = Bench({})
-    assert rounds._take_back(bench, found) == (set() if kept else {"b"})
+    found = search(named, later, rows={"b": row})
+    assert rounds._take_back(screening(), found) == (set() if kept else {"b"})
     assert len(found.choices) == len(found.models) - 1 == (2 if kept else 1)
     assert found.rows["b"].reason.startswith("accepted" if kept else "small beside a,")
 
@@ -299,29 +252,15 @@ def test_a_small_relative_of_a_named_cause_may_be_its_rest(
 def test_a_single_wave_that_leaves_a_rest_may_be_the_first_of_several(
     named: str, rest: str, along: tuple[float, float], reason: str, open_: bool
 ) -> None:
-    records = {record.name: record for record in effects()}
-    wave, later = (
-        replace(
-            made,
-            score=SimpleNamespace(
-                signature=made.score.signature,
-                candidate=SimpleNamespace(name=made.name, record=records[made.name]),
-            ),
-        )
-        for made in (
-            trial(named, 1.0),
-            trial(rest, 0.15, reason, by_blocks=reason == SPREAD, contributed=along),
-        )
-    )
-    bench: Any = Bench({})
-    models: list[Any] = ["base", "with one"]
-    found = Search(models, [Choice(wave, ())])
+    wave, later = trial(named, 1.0), trial(score(rest, contributed=along), 0.15, reason)
     if reason:
-        rounds._doubt_single_waves(bench, found, [later])
+        found = search(wave)
+        later = replace(later, by_blocks=reason == SPREAD)
+        rounds._doubt_single_waves(screening(), found, [later])
     else:
-        found = Search([*models, "with both"], [Choice(wave, ()), Choice(later, ())])
-        found.rows[rest] = CandidateRow(rest, 0.3, 0.05, 0.2, "accepted")
-        rounds._take_back(bench, found)
+        row = CandidateRow(rest, 0.3, 0.05, 0.2, "accepted")
+        found = search(wave, later, rows={rest: row})
+        rounds._take_back(screening(), found)
     assert [rival.name for rival in found.choices[0].rivals] == ([rest] if open_ else [])
 
 
@@ -341,7 +280,7 @@ def test_a_single_wave_that_leaves_a_rest_may_be_the_first_of_several(
 def test_what_geometry_leaves_no_rest_of_speaks_against_a_name(
     name: str, coordinate: str, decided: bool
 ) -> None:
-    cause = Cause(name, "cogging", True, (), {}, None, "", "", "", "")
+    cause = cause_of(name, "cogging")
     left = [Unexplained(coordinate, 0.1)]
     after = doubt_geometry(cause, left, left)
     assert after.decided is decided
@@ -367,14 +306,14 @@ def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
 ) -> None:
     rows, recordings = 40, len(gained)
     recording = np.repeat(np.arange(recordings), rows)
-    cells = SimpleNamespace(block=recording, recording=recording)
+    session = evidence(cells=cells(recording, recording))
 
-    def model(*powers: float) -> Any:
-        blocks = np.ones(recordings), np.array(powers)
-        return SimpleNamespace(blocks=blocks, evidence=SimpleNamespace(cells=cells))
+    def leaves(powers: Any) -> Model:
+        return model(session, blocks=(np.ones(recordings), np.array(powers)))
 
     contributed = np.where(recording == 0, 0.0, 1.0)
-    kept = block_gains.without_the_best(model(*np.ones(recordings)), model(*gained), contributed)
+    before, after = leaves(np.ones(recordings)), leaves(gained)
+    kept = block_gains.without_the_best(before, after, contributed)
     assert (kept > 0.5 * decide.LEAST_GAIN) == passes
 
 
@@ -386,11 +325,9 @@ def test_a_recording_in_which_an_effect_does_nothing_does_not_judge_it(
 def test_what_explains_many_times_what_others_do_is_refitted_though_it_does_harm_held_out(
     other: float, threshold: float, asked: bool
 ) -> None:
-    scores = [trial("run_in", 0.5).score, trial("warm_up", 0.4).score, trial("cogging", 0.1).score]
-    slow: Any = SimpleNamespace(family="slow", name="slow")
-    for score, size in zip(scores, (0.3, 0.28, other), strict=True):
-        score.score, score.threshold, score.heldout = size, threshold, -0.1
-    scores[0].candidate.record = scores[1].candidate.record = slow
+    sizes = {"run_in": 0.3, "warm_up": 0.28, "cogging": other}
+    assert EFFECTS["run_in"].family == EFFECTS["warm_up"].family != EFFECTS["cogging"].family
+    scores = [score(name, size, threshold=threshold, heldout=-0.1) for name, size in sizes.items()]
     # A relative that explains as much is the same thing by another name, or by its right one.
     assert rounds._outstanding(scores) == (scores[:2] if asked else [])
     assert rounds._outstanding([]) == []
@@ -412,20 +349,17 @@ def test_what_explains_many_times_what_others_do_is_refitted_though_it_does_harm
 def test_beside_a_name_a_further_one_has_to_stand_out(
     times: float, family: str, late: bool, loop: bool, named: bool, passes: bool
 ) -> None:
-    record = SimpleNamespace(family=family, late=late)
-    score: Any = SimpleNamespace(
-        score=times * 0.01, threshold=0.01, candidate=SimpleNamespace(record=record)
-    )
-    evidence: Any = SimpleNamespace(loop=loop)
+    hooks = {"hooks": KINDS["late"]} if late else {}
+    own = score(candidate("a", family=family, **hooks), times * 0.01, threshold=0.01)
+    session = evidence(loop=loop)
     families = {"waves"} if named else set()
-    assert stands_out(evidence, score, families) == passes
+    assert stands_out(session, own, families) == passes
     # So does what a refit gains beyond doubt on rows held out.
     for gain, z in ((0.2, 9.0), (0.5, 3.0), (0.5, 9.0)):
-        tried: Any = SimpleNamespace(score=score, reason="", gain=gain, z=z)
         surely = gain > 0.3 and z > 4.0
-        assert (doubt_by_forms(evidence, tried, families) == "") == (passes or surely)
-    refused: Any = SimpleNamespace(score=score, reason="another one", gain=0.2, z=9.0)
-    assert doubt_by_forms(evidence, refused, families) == ""
+        doubt = doubt_by_forms(session, trial(own, gain=gain, z=z), families)
+        assert (doubt == "") == (passes or surely)
+    assert doubt_by_forms(session, trial(own, 1.0, "another one", z=9.0), families) == ""
 
 
 @pytest.mark.parametrize(("explained", "refused"), [(0.03, True), (0.1, False)])
@@ -435,39 +369,32 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
     block = np.arange(number)
     train = np.where(block % 2 == 0, 1.0, 0.0)
     held = 1.0 - train
-    cells = SimpleNamespace(block=block, recording=block % 4, kind=block % 2, kinds=("a", "b"))
-    evidence = SimpleNamespace(cells=cells, loop=False, simulated=False, fitted=train > 0.0)
-    plant = SimpleNamespace(inertia=1.0, effects=(SimpleNamespace(name="cogging", parameters={}),))
-    base: Any = SimpleNamespace(evidence=evidence, power=100.0, plant=plant, blocks=(train, held))
+    session = evidence(
+        cells=cells(block, block % 4, block % 2, number=2),
+        plans=[Plan(train > 0.0, train == 0.0)],
+        fitted=train > 0.0,
+    )
+    waved = plant(effects=[{"name": "cogging", "order": 1.0, "cosine": 0.1, "sine": 0.1}])
+    before = model(session, power=100.0, blocks=(train, held))
     # Every block gains, one a little more than another.
     left = 0.5 * held * (1.0 + 0.01 * block / number)
-    model: Any = SimpleNamespace(
+    after = model(
+        session,
+        waved,
         power=100.0 * (1.0 - explained),
         relative_input_power=1.0,
-        plant=plant,
         blocks=((1.0 - explained) * train, left),
-        strength=lambda _: 9.0,
         columns=np.ones((number, 1)),
         residual=np.ones(number),
     )
-    record = SimpleNamespace(
-        late=False,
-        limits=False,
-        slope_misleads=lambda loop: False,
-        shapes=(),
-        family="angle",
-        parameters=(),
-    )
-    candidate = SimpleNamespace(name="cogging", record=record, parameters=2, gains=())
-    score: Any = SimpleNamespace(score=explained, threshold=0.01, candidate=candidate)
-    judged = decide.judge(base, score, model, np.ones(number), 0.1)
+    own = score("cogging", explained, threshold=0.01)
+    judged = decide.judge(before, own, after, np.ones(number), 0.1)
     assert ("the base had lost the machine" in judged.reason) == refused, judged.reason
     if refused:
         assert not judged.by_blocks
 
 
 def test_where_an_effect_touches_nothing_its_gain_has_no_standard_error() -> None:
-    base: Any = SimpleNamespace(blocks=BLOCKS)
-    model: Any = SimpleNamespace(blocks=(0.5 * BLOCKS[0], 0.5 * BLOCKS[1]))
-    gain, z = block_gains.heldout_gain(base, model, np.zeros(30, dtype=bool))
+    half = model(blocks=(0.5 * BLOCKS[0], 0.5 * BLOCKS[1]))
+    gain, z = block_gains.heldout_gain(base(), half, np.zeros(30, dtype=bool))
     assert (gain, z) == (0.5, 0.0)

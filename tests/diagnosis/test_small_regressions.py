@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
+from tests.diagnosis.builders import EFFECTS, search
 
 from stiction.diagnosis.adequacy.periodic import frequency_view
 from stiction.diagnosis.data.evidence import Cells
@@ -66,6 +64,6 @@ def test_data_that_hide_every_effect_that_was_asked_tell_nothing(hidden: int, ve
     """Effects that this plant cannot have were never asked."""
     asked = {name: CandidateRow(name, 0.01, 0.02, None, "") for name in ("stribeck", "cogging")}
     refused = {"goal_rate_limit": CandidateRow("goal_rate_limit", None, None, None, "no servo")}
-    blind = [SimpleNamespace(name=name) for name in list(asked)[:hidden]]
-    selection: Any = SimpleNamespace(choices=[], rows={**asked, **refused}, blind=blind)
+    blind = [EFFECTS[name] for name in list(asked)[:hidden]]
+    selection = search(rows={**asked, **refused}, blind=blind)
     assert verdict_of(selection, (), True) == verdict

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
-from typing import cast
 
 import numpy as np
 import pytest
+from tests.diagnosis.builders import score
 
 import stiction as st
 from stiction._native import Motion
@@ -18,7 +17,6 @@ from stiction.diagnosis.phrases import NO_COORDINATE
 from stiction.diagnosis.records import Unexplained
 from stiction.diagnosis.screening.candidates import Scales
 from stiction.diagnosis.screening.orders import open_orders, order_words
-from stiction.diagnosis.screening.screen import Score
 from stiction.diagnosis.selection.listing import row_of_score
 from stiction.fitting.result import FitParameter
 from stiction.plan import EXPERIMENTS
@@ -147,11 +145,9 @@ def test_an_asymmetry_says_which_way_friction_is_higher(share: float, told: str)
     [(0.096, "all but 10 % of it"), (0.004, "all but 0.4 % of it"), (0.0, "all of")],
 )
 def test_the_share_that_the_base_imitates_is_a_plain_number(left: float, told: str) -> None:
-    candidate = SimpleNamespace(name="run_in")
-    score = SimpleNamespace(
-        testable=False, left=left, candidate=candidate, score=0.0, threshold=0.1, heldout=0.0
-    )
-    assert told in row_of_score(cast("Score", score)).reason
+    own = score("run_in", 0.0, threshold=0.1, heldout=0.0, left=left, visible=0.0)
+    assert not own.testable
+    assert told in row_of_score(own).reason
 
 
 def test_more_than_noise_that_goes_with_nothing_is_said_so() -> None:

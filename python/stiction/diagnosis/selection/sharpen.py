@@ -16,7 +16,7 @@ from ..screening.block_gains import heldout_gain, log_gain
 from ..screening.model import Model, likeliest_of
 from .choose import Choice
 from .decide import LEAST_GAIN, LEAST_Z, PENALTY, Trial
-from .trials import MUCH, Screening, promises, whole_fit
+from .trials import MUCH, Screening, promises
 
 __all__ = ["beside_a_second", "free_shapes", "has_free_shapes"]
 
@@ -107,9 +107,9 @@ def _freed(screening: Screening, winner: Trial) -> Model | None:
     if not held:
         return None
     plants = _with_shapes_free(before.plant, record, held)
-    evidence, nuisances = screening.evidence, before.nuisances
-    start = likeliest_of(evidence, plants, nuisances) if len(plants) > 1 else plants[0]
-    model = whole_fit(evidence, start, nuisances)
+    several, nuisances = len(plants) > 1, before.nuisances
+    start = likeliest_of(screening.evidence, plants, nuisances) if several else plants[0]
+    model = screening.fit(start, nuisances)
     gain, z = heldout_gain(before, model)
     if gain <= LEAST_GAIN or z <= LEAST_Z or log_gain(before, model) <= PENALTY * len(held):
         return None

@@ -11,7 +11,7 @@ from ..screening.model import Model, without_effect
 from .beside import stands_out
 from .choose import Choice, choose, strangers
 from .decide import Trial
-from .trials import Screening, promises, whole_fit
+from .trials import Screening, promises
 
 __all__ = ["pass_together", "passes_beside"]
 
@@ -78,7 +78,7 @@ def pass_together(
         second = screening.trial(first.model, score)
         if second.reason:
             continue
-        alone = whole_fit(evidence, without_effect(second.model.plant, first.name), base.nuisances)
+        alone = screening.fit(without_effect(second.model.plant, first.name), base.nuisances)
         again = next(s for s in screening.scores(alone) if s.candidate.name == first.name)
         beside = screening.trial(alone, again) if promises(again) else None
         if beside is not None and not beside.reason:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.progress import phase
-from ...fitting.minimise import from_elsewhere
+from ...fitting.minimise import Solution, from_elsewhere
 from ...fitting.rows import Nuisances
 from ...plant import Plant
 from ...residual.finite import finite
@@ -42,6 +42,7 @@ __all__ = [
     "LESSER",
     "SLIGHT",
     "Screening",
+    "better_of",
     "compared_fit",
     "escape_local_minimum",
     "promises",
@@ -145,6 +146,10 @@ class Screening:
         self.kept.append((model, scores))
         del self.kept[:-MOST_KEPT]
         return scores
+
+    def fit(self, plant: Plant, nuisances: Nuisances) -> Model:
+        """A plant fitted to its end, from these nuisances."""
+        return whole_fit(self.evidence, plant, nuisances)
 
     def may_count(self, score: Score) -> bool:
         """Whether a candidate may gain what counts, were a refit to come to many times its promise.
@@ -440,14 +445,23 @@ def escape_local_minimum(model: Model) -> Model:
     A plant of which nothing is left, drive and inertia and all, explains everything and is no
     better one.
     """
-    evidence = model.evidence
-    solution = from_elsewhere(model.solution, evidence.train)
+    return better_of(model, from_elsewhere(model.solution, model.evidence.train))
+
+
+def better_of(model: Model, solution: Solution) -> Model:
+    """A model, or what another fit of its plant came to, where that is better and leaves a machine.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        The other fit was interrupted.
+    """
     if solution.interrupted:
         raise KeyboardInterrupt
     if solution.power >= (1.0 - WORTH_MOVING) * model.solution.power:
         return model
-    better = Model(evidence, solution, model.nuisances)
-    return model if _too_good(evidence, better) else better
+    better = Model(model.evidence, solution, model.nuisances)
+    return model if _too_good(model.evidence, better) else better
 
 
 def whole_fit(
