@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache, cached_property
 from typing import Any
 
@@ -17,12 +17,13 @@ import numpy as np
 
 import stiction as st
 from stiction.catalogue import EffectRecord
-from stiction.diagnosis.adequacy.coordinates import COORDINATES, UNJUDGED
+from stiction.diagnosis.adequacy.coordinates import COORDINATES, UNJUDGED, Look
 from stiction.diagnosis.adequacy.view import View
+from stiction.diagnosis.data.contact import Slides
 from stiction.diagnosis.data.evidence import Cells, Evidence
 from stiction.diagnosis.records import Cause
 from stiction.diagnosis.screening.candidates import Candidate, Scales, candidates
-from stiction.diagnosis.screening.model import Model
+from stiction.diagnosis.screening.model import Model, fit_model
 from stiction.diagnosis.screening.screen import Score
 from stiction.diagnosis.screening.signatures import Signatures
 from stiction.diagnosis.selection.choose import Choice
@@ -31,10 +32,11 @@ from stiction.diagnosis.selection.search import Search
 from stiction.diagnosis.selection.trials import Screening
 from stiction.fitting.forms import KERNELS, Through
 from stiction.fitting.minimise import Solution
-from stiction.fitting.result import FitParameter
-from stiction.fitting.rows import Nuisances
+from stiction.fitting.result import FitParameter, FitResult
+from stiction.fitting.rows import Nuisances, Rows
 from stiction.fitting.start import free_paths
 from stiction.fitting.variables import Variables
+from stiction.residual.weak_form import WeakForm
 
 DT = 4e-3
 EFFECTS = {record.name: record for record in st.effects()}
@@ -107,6 +109,21 @@ def solution(fitted: st.Plant, paths: Sequence[str] | None = None, **stated: Any
     known: dict[str, Any] = {"message": "", "evaluations": 1, "power": 1.0}
     known |= {"success": True, "interrupted": False, "nuisances": Nuisances()}
     return Solution(fitted, variables, vector, vector, **{**known, **stated})
+
+
+def rows(position: Any, counted: Callable[[Any], Any], *, index: int = 0) -> Rows:
+    """A recording of 1 ms that moves so, and which of its rows count by where the machine is."""
+    time = np.arange(len(position)) * 1e-3
+    form = WeakForm(plant(), st.Recording(time, np.zeros(len(time)), position))
+    return Rows(plant(), form, index, counted(form.mean(form.position[1:])))
+
+
+def look(**stated: Any) -> Look:
+    """What rows are looked at by; 0 where nothing is stated."""
+    none = np.zeros(len(next(iter(stated.values()))))
+    known = {each.name: none for each in fields(Look)}
+    slides = Slides(**{each.name: none for each in fields(Slides)})
+    return Look(**{**known, "slides": slides, **stated})
 
 
 Strength = float | Mapping[str, float]
@@ -244,6 +261,17 @@ def number(value: float = 1.0, *, ci95: tuple[float, float] | None = None, **sta
     low, high = ci95 or (0.9 * value, 1.1 * value)
     known: dict[str, Any] = {"stderr": (high - low) / 4.0, "unit": "", "at_bound": ""}
     return FitParameter(value=value, ci95=(low, high), start=value, **{**known, **stated})
+
+
+def fitted(**numbers: FitParameter) -> FitResult:
+    """What a fit says of a real session; of the effects of these names other numbers."""
+    parameters = {f"effects.{name.replace('__', '.')}": each for name, each in numbers.items()}
+    return replace(_fit(), parameters={**_fit().parameters, **parameters})
+
+
+@cache
+def _fit() -> FitResult:
+    return fit_model(evidence(), plant()).fit_result
 
 
 def view(name: str, share: float, *, threshold: float = 0.02, size: float = 0.01) -> View:

@@ -2,69 +2,84 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import model, plant
 from tests.reference.session_reference import make_session
 
 import stiction as st
 from stiction.diagnosis.adequacy.bursts import burst_of
+from stiction.diagnosis.data.evidence import Evidence
 
-RECORDINGS, ROWS, DT = 4, 4000, 5e-3
-NAMES = [f"recording {k + 1}" for k in range(RECORDINGS)]
+RECORDINGS, DT = 4, 5e-3
+WINDOW = 40
+"""Rows in .2 s."""
+
+
+@cache
+def session() -> Evidence:
+    """Rows of recordings of 20 s, each weighing twice."""
+    source, time = np.random.default_rng(8), 3.0 + DT * np.arange(4000)
+    recordings = []
+    for role in ("train", "train", "select", "select", "test"):
+        waves = [0.3 * np.sin(w * time + source.uniform(0.0, 6.0)) for w in (2.0, 5.3, 13.0)]
+        effort = np.sum(waves, axis=0)
+        moved = plant().motor().simulate(effort[:-1], DT).position
+        position = np.concatenate([[0.0], moved])
+        recordings.append(st.Recording(time, effort, position, role=role))
+    found = Evidence(plant(), recordings)
+    for rows in found.shown:
+        rows.weight = 2.0
+    return found
+
+
+def per_recording() -> int:
+    """Rows of each recording."""
+    return int(session().shown[0].mask.sum())
+
+
+def into() -> float:
+    """When the first of them is, in s from the start of its recording."""
+    (first, *_) = session().shown
+    return float(first.form.time[first.mask][0]) - 3.0
 
 
 def found(more: np.ndarray, residual: float = 1.0) -> Any:
-    """What bursts of white noise with this beside it; shape (RECORDINGS * ROWS,)."""
-    source = np.random.default_rng(8)
-    time = 3.0 + DT * np.arange(ROWS)
-    rows = [
-        SimpleNamespace(
-            index=k,
-            form=SimpleNamespace(dt=DT, stride=1, time=time, clock=100.0 * k),
-            mask=np.ones(ROWS, dtype=bool),
-            weight=2.0,
-        )
-        for k in range(RECORDINGS)
-    ]
-    evidence: Any = SimpleNamespace(
-        shown=rows,
-        cells=SimpleNamespace(recording=np.repeat(np.arange(RECORDINGS), ROWS)),
-        names=NAMES,
-        recordings=[SimpleNamespace(time=time)] * RECORDINGS,
-    )
-    model: Any = SimpleNamespace(residual=residual * source.standard_normal(len(more)) + more)
+    """What bursts of white noise with this beside it, a value for each row."""
+    source = np.random.default_rng(9)
+    left = model(session(), residual=residual * source.standard_normal(len(more)) + more)
     null = source.standard_normal((len(more), 12))
-    return burst_of(evidence, model, null, 1.0, [100.0 * k for k in range(RECORDINGS)])
+    return burst_of(session(), left, null, 1.0, [100.0 * k for k in range(RECORDINGS)])
 
 
 def acting(*windows: tuple[int, int], size: float) -> np.ndarray:
     """A push of .2 s in each of these (recording, window)."""
-    push = np.zeros(RECORDINGS * ROWS)
+    push = np.zeros(RECORDINGS * per_recording())
     for recording, window in windows:
-        first = recording * ROWS + 40 * window
-        push[first : first + 40] = size
+        first = recording * per_recording() + WINDOW * window
+        push[first : first + WINDOW] = size
     return push
 
 
 def test_one_window_is_told_with_its_place() -> None:
     burst = found(acting((2, 31), size=12.0))
     assert burst.recording == "recording 3"
-    assert burst.start == pytest.approx(31 * 0.2)
-    total = RECORDINGS * ROWS + 40 * 145.0
+    assert burst.start == pytest.approx(into() + 31 * 0.2)
+    total = RECORDINGS * per_recording() + 40 * 145.0
     assert burst.share == pytest.approx(40 * 145.0 / total, rel=0.05)
-    assert "6.2 s into recording 3" in burst.advice().experiment
+    assert f"{burst.start:.1f} s into recording 3" in burst.advice().experiment
     most = int(np.argmax(burst.view.mean))
-    assert burst.view.at[most] == pytest.approx(200.0 + 31 * 0.2 + 0.1)
+    assert burst.view.at[most] == pytest.approx(200.0 + into() + 31 * 0.2 + 0.1)
     assert burst.view.mean[most] == pytest.approx(6.0, rel=0.05)
     assert burst.view.high[most] < 1.0
 
 
 def test_noise_is_no_burst() -> None:
-    assert found(np.zeros(RECORDINGS * ROWS)) is None
+    assert found(np.zeros(RECORDINGS * per_recording())) is None
 
 
 @pytest.mark.parametrize("size", [3.0, 8.0])

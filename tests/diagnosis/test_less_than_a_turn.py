@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import evidence, plant, rows
+from tests.diagnosis.builders import model as model_of
 from tests.reference.session_reference import make_session
 
 import stiction as st
@@ -110,15 +111,11 @@ def test_a_weight_at_its_top_is_no_sure_constant() -> None:
 
 @pytest.mark.parametrize(("order", "seen"), [(7.0, False), (9.0, True)])
 def test_a_wave_that_was_never_seen_to_repeat_is_known_as_such(order: float, seen: bool) -> None:
-    effect = SimpleNamespace(name="cogging", parameters={"order": SimpleNamespace(value=order)})
-    places = [np.linspace(-0.3, 0.0, 200) + 0.3 * k for k in range(2)]
+    waved = plant(effects=[{"name": "cogging", "order": order, "cosine": 0.1, "sine": 0.1}])
+    places = [np.linspace(-0.3, 0.0, 2000) + 0.3 * k for k in range(2)]
     # What was not looked at, and what lies between two recordings, does not count.
-    places.append(np.linspace(4.0, 9.0, 200))
-    shown = [
-        SimpleNamespace(form=SimpleNamespace(position=x, mean=lambda x: x), mask=x[1:] < 1.0)
-        for x in places
-    ]
-    evidence = SimpleNamespace(shown=shown)
-    model: Any = SimpleNamespace(plant=SimpleNamespace(effects=(effect,)), evidence=evidence)
+    places.append(np.linspace(4.0, 9.0, 2000))
+    shown = [rows(x, lambda at: at < 1.0) for x in places]
+    model = model_of(evidence(shown=shown), waved)
     assert lacks_repeats(model, "cogging") is not seen
     assert not lacks_repeats(model, "torque_bias")

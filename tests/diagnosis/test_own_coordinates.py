@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType, SimpleNamespace
+from types import MappingProxyType
 
 import numpy as np
 import pytest
+from tests.diagnosis import builders
 
 import stiction as st
 from stiction.diagnosis.adequacy.by_recording import BY_RECORDING
 from stiction.diagnosis.adequacy.coordinates import COORDINATES, UNJUDGED, Coordinate
-from stiction.diagnosis.adequacy.omnibus import Rest, View
+from stiction.diagnosis.adequacy.omnibus import Rest
 from stiction.diagnosis.adequacy.passing import DRIFT, MOMENTS
 from stiction.diagnosis.adequacy.periodic import COUPLED, FREQUENCY, ORDERS
 from stiction.diagnosis.adequacy.response import RESPONSE
 from stiction.diagnosis.adequacy.smoother import BINS, smoother
 from stiction.diagnosis.data.contact import slides_of
+from stiction.diagnosis.data.evidence import Plan
 from stiction.diagnosis.findings.advice import APART, BY_COORDINATE
 from stiction.diagnosis.findings.own import own_coordinate
 from stiction.diagnosis.findings.presentation import PRESENTATIONS, Wave
@@ -87,8 +89,8 @@ def test_a_wave_is_folded_at_its_own_period(
 ) -> None:
     coordinate = own_coordinate(effect_of("cogging", **values), motion)
     assert coordinate.name == name
-    look = SimpleNamespace(position=np.array([0.1, 0.1 + period, 0.1 - 3 * period]))
-    np.testing.assert_allclose(coordinate.values(look), 0.1, atol=1e-9)
+    at = builders.look(position=np.array([0.1, 0.1 + period, 0.1 - 3 * period]))
+    np.testing.assert_allclose(coordinate.values(at), 0.1, atol=1e-9)
 
 
 def test_a_slide_remembers_the_rest_and_the_loading_before_it() -> None:
@@ -130,27 +132,21 @@ def test_rows_without_a_place_are_left_out_and_a_factor_is_divided_by() -> None:
     residual = weights * np.where(np.isfinite(place), 3.0 * np.nan_to_num(place) * factor, 7.0)
     null = weights[:, None] * source.standard_normal((number, 8))
     held = np.arange(number) % 4 < 2
-    evidence = SimpleNamespace(
-        shown=[SimpleNamespace(mask=np.ones(number, dtype=bool))],
-        plans=[SimpleNamespace(fit=~held, held=held)],
+    evidence = builders.evidence(
+        shown=[builders.evidence().shown[0].of(np.ones(number, dtype=bool))],
+        plans=[Plan(~held, held)],
         weights=weights,
     )
-    look = SimpleNamespace(place=place, factor=factor)
+    seen = builders.look(position=place, load=factor)
     coordinate = Coordinate(
-        "place", "place, m", False, lambda look: look.place, factor=lambda look: look.factor
+        "place", "place, m", False, lambda look: look.position, factor=lambda look: look.load
     )
-    view = smoother(coordinate, evidence, [look], np.column_stack([residual, null]), 1.0)
+    view = smoother(coordinate, evidence, [seen], np.column_stack([residual, null]), 1.0)
     assert 6 < len(view.at) < BINS  # as few rows have a place
     np.testing.assert_allclose(view.mean, 3.0 * view.at, atol=0.07)
     power = residual[held] ** 2
     own = np.isfinite(place[held])
     assert view.share == pytest.approx(np.sum(power[own]) / np.sum(power), abs=0.01)
-
-
-def view_of(name: str, share: float) -> View:
-    coordinate = next(each for each in (*COORDINATES, *UNJUDGED) if each.name == name)
-    flat = np.zeros(2)
-    return View(coordinate, flat, flat, flat, flat, share, threshold=0.02, size=0.01)
 
 
 @pytest.mark.parametrize(
@@ -165,6 +161,6 @@ def test_a_coordinate_and_its_refinement_are_listed_once(
     wide: float, fine: float, listed: list[str]
 ) -> None:
     shares = {"speed": 0.12, "effort": wide, "effort along the motion": fine}
-    views = [view_of(name, share) for name, share in shares.items()]
+    views = [builders.view(name, share) for name, share in shares.items()]
     rest = Rest(tuple(sorted(views, key=lambda view: -view.share)))
     assert [view.coordinate.name for view in rest.significant_views()] == listed

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.diagnosis import builders
 
 import stiction as st
 from stiction.diagnosis.data.evidence import Evidence
 from stiction.diagnosis.findings.conclude import surrogates_of
 from stiction.diagnosis.screening.base import fit_baseline
-from stiction.diagnosis.screening.model import Model, fit_model
+from stiction.diagnosis.screening.model import fit_model
 from stiction.diagnosis.selection.moved import _powers, borne_out_in_motion
 from stiction.diagnosis.selection.search import Search
 from stiction.fitting.forms import Through
@@ -146,11 +146,9 @@ def test_a_cause_that_freezes_the_machine_is_taken_back() -> None:
         "drive_saturation", {"share": Parameter(1.0), "limit": Parameter(0.9 * COULOMB)}
     )
     models = [
-        Model(evidence, SimpleNamespace(plant=each, nuisances=NOTHING, vector=None))  # type: ignore[arg-type]
-        for each in (known, replace(known, effects=(limited,)))
+        builders.model(evidence, each) for each in (known, replace(known, effects=(limited,)))
     ]
-    choice = SimpleNamespace(winner=SimpleNamespace(name="drive_saturation"))
-    left = borne_out_in_motion(Search(models, [choice]), evidence)  # type: ignore[list-item]
+    left = borne_out_in_motion(builders.search("drive_saturation", models=models), evidence)
     assert not left.choices
 
 
@@ -160,14 +158,13 @@ def test_a_cause_is_taken_back_that_is_further_off_than_a_machine_that_hardly_mo
     evidence = Evidence(loose, below())
     limited = Effect("drive_saturation", {"share": Parameter(1.0), "limit": Parameter(2.0)})
     models = [
-        Model(evidence, SimpleNamespace(plant=each, nuisances=NOTHING, vector=None))  # type: ignore[arg-type]
-        for each in (loose, replace(loose, effects=(limited,)))
+        builders.model(evidence, each) for each in (loose, replace(loose, effects=(limited,)))
     ]
-    choice = SimpleNamespace(winner=SimpleNamespace(name="drive_saturation"))
     powers = _powers(models, evidence)
     assert powers is not None
     assert powers.left[1].sum() < 0.5 * powers.left[0].sum()
-    assert not borne_out_in_motion(Search(models, [choice]), evidence).choices  # type: ignore[list-item]
+    named = builders.search("drive_saturation", models=models)
+    assert not borne_out_in_motion(named, evidence).choices
 
 
 def test_recordings_that_decide_are_asked_without_those_that_are_fitted() -> None:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import cells, evidence, model
 from tests.reference.session_reference import make_session
 
 import stiction as st
 from stiction.diagnosis.data.evidence import Plan
 from stiction.diagnosis.screening.block_gains import lacks_excitation
+from stiction.diagnosis.screening.model import Model
 from stiction.diagnosis.selection.replication import confirms
 
 BLOCKS, ROWS = 40, 200
@@ -38,10 +37,10 @@ def asked(
     noise = np.random.default_rng(2).standard_normal(len(there))
     own = np.zeros((len(there), 1)) if columns is None else columns
     plans = [Plan(FITTED, ~FITTED, FITTED if folds else None)]
-    evidence = SimpleNamespace(plans=plans, cells=SimpleNamespace(block=BLOCK), overlap=6.0)
-    base = SimpleNamespace(evidence=evidence, columns=own, residual=there + noise)
-    model = SimpleNamespace(residual=there - explained + noise)
-    return confirms(base, model, explained, whole=whole)
+    session = evidence(plans=plans, cells=cells(BLOCK), overlap=6.0)
+    base = model(session, columns=own, residual=there + noise)
+    after = model(session, residual=there - explained + noise)
+    return confirms(base, after, explained, whole=whole)
 
 
 def test_one_block_held_out_confirms_what_was_learnt() -> None:
@@ -114,10 +113,10 @@ def test_what_does_little_where_it_is_to_be_confirmed_is_hardly_excited_there(
     noise = np.random.default_rng(2).standard_normal(len(cause))
     columns, left = np.ones((len(cause), 1)), cause + noise
 
-    def base(folds: bool) -> Any:
+    def base(folds: bool) -> Model:
         plans = [Plan(FITTED, ~FITTED, FITTED if folds else None)]
-        evidence = SimpleNamespace(plans=plans, cells=SimpleNamespace(block=BLOCK))
-        return SimpleNamespace(evidence=evidence, columns=columns, residual=left)
+        session = evidence(plans=plans, cells=cells(BLOCK))
+        return model(session, columns=columns, residual=left)
 
     assert lacks_excitation(base(False), cause, 0.025) == hardly
     assert not lacks_excitation(base(True), cause, 0.025)
