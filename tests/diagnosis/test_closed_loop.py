@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis import builders
+from tests.plant.test_servo import plant as servo_plant
 from tests.reference.session_reference import make_session
 
 import stiction as st
@@ -20,8 +22,8 @@ from stiction.diagnosis.findings import loop
 from stiction.diagnosis.findings.loop import with_loop_replay
 from stiction.diagnosis.findings.words import loop_words, worse_loop_words
 from stiction.diagnosis.records import CandidateRow
-from stiction.diagnosis.selection.search import Search
-from stiction.fitting.rows import Nuisances
+from stiction.plant.parameter import Parameter
+from stiction.plant.stated import Effect
 
 # A power of two: stamps carry no round-off, and a loop made by hand agrees to the last bit.
 DT = 2.0**-10
@@ -296,37 +298,53 @@ def test_a_loop_that_a_cause_makes_worse_is_said_on_the_first_screen(
         ((1.0, 3.0, 0.9), 2),
     ],
 )
-@pytest.mark.parametrize("loop_of", ["servo", "controller", ""])
-@pytest.mark.parametrize("sealed", [True, False])
 def test_what_leads_the_simulated_loop_astray_is_no_cause(
-    errors: tuple[float | None, ...],
-    kept: int,
-    loop_of: str,
-    sealed: bool,
-    monkeypatch: pytest.MonkeyPatch,
+    errors: tuple[float | None, ...], kept: int
 ) -> None:
-    monkeypatch.setattr(loop, "_runs", lambda _evidence, model, _wanted: (model.error, []))
-    monkeypatch.setattr(loop, "_rms", lambda _evidence, error, _parts: error)
-    evidence = SimpleNamespace(
-        plant=SimpleNamespace(
-            servo=loop_of == "servo", controller=loop_of == "controller", prescribed_motion=False
-        ),
-        recordings=[SimpleNamespace(position=np.zeros(9), channels=("reference",))],
-        split=SimpleNamespace(
-            train=[SimpleNamespace(recording=0)], select=[], test=[SimpleNamespace(recording=0)]
-        ),
-        sealed=sealed,
-    )
     names = ("first", "second")[: len(errors) - 1]
     rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
-    choices = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
-    models = [SimpleNamespace(error=error) for error in errors]
-    found = loop.borne_out(Search(models, choices, rows), evidence)  # type: ignore[arg-type]
-    kept = kept if loop_of else len(names)
+    selection = builders.search(*names, rows=rows)
+    found = loop.drop_misleading(selection, errors)
     assert [choice.winner.name for choice in found.choices] == list(names[:kept])
-    assert found.models == models[: kept + 1]
+    assert found.models == selection.models[: kept + 1]
     dropped = [found.rows[name].reason for name in names[kept:]]
     assert dropped == [loop.LOOP_AGAINST] * len(dropped)
+
+
+def as_recorded(whole: st.Recording, **labels: Any) -> st.Recording:
+    return st.Recording(whole.time, whole.input, whole.position, **whole.channels, **labels)
+
+
+@pytest.mark.parametrize("controlled", [True, False])
+@pytest.mark.parametrize("opened", [False, True])
+def test_a_cause_that_the_machine_lacks_is_taken_back_where_a_loop_tells(
+    controlled: bool, opened: bool
+) -> None:
+    machine = plant(KINDS["p"])
+    recordings = [
+        as_recorded(by_hand(machine, share * goals(4.0)), role=role)
+        for share, role in ((1.0, "train"), (0.9, "select"), (1.1, "test"))
+    ]
+    stated = machine if controlled else plant()
+    bent = replace(stated, effects=(Effect("torque_bias", {"bias": Parameter(0.15)}),))
+    evidence = Evidence(stated, recordings)
+    if opened:
+        evidence.open_test()
+    models = [builders.model(evidence, each) for each in (stated, bent)]
+    found = loop.borne_out(builders.search("torque_bias", models=models), evidence)
+    assert len(found.choices) == (0 if controlled else 1)
+    # What does no harm stays.
+    same = builders.search("torque_bias", models=models[:1] * 2)
+    assert loop.borne_out(same, evidence).choices
+
+
+def test_a_servo_has_a_loop_without_a_reference() -> None:
+    servo = servo_plant()
+    whole = by_hand(plant(KINDS["p"]), goals())
+    recording = st.Recording(whole.time, whole.input, whole.position)
+    assert loop._is_controlled(servo)
+    assert loop._has_loop(servo, recording)
+    assert not loop._has_loop(plant(KINDS["p"]), recording)
 
 
 def test_the_report_shows_the_loop_where_there_is_one(
@@ -359,12 +377,12 @@ def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -
     assert found.baseline is not None
     assert found.baseline.replay is not None
     evidence = Evidence(machine, [recording])
-    base = SimpleNamespace(plant=machine, nuisances=Nuisances())
+    base = builders.model(evidence, machine)
     with pytest.raises(SealedError):
-        with_loop_replay(found, evidence, base, base)  # type: ignore[arg-type]
+        with_loop_replay(found, evidence, base, base)
     evidence.weigh()
     evidence.open_test()
-    again = with_loop_replay(found, evidence, base, base)  # type: ignore[arg-type]
+    again = with_loop_replay(found, evidence, base, base)
     assert again.baseline is not None
     assert again.baseline.replay is not None
     error = replay(machine, recording).error
@@ -378,8 +396,8 @@ def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -
     assert again.pictures is not None
     assert again.pictures.tracking is not None
     assert np.isnan(again.pictures.tracking.measured).any()
-    away = SimpleNamespace(plant=plant({"kind": "pd", "kp": -9.0}), nuisances=Nuisances())
-    lost = with_loop_replay(found, evidence, away, away)  # type: ignore[arg-type]
+    away = builders.model(evidence, plant({"kind": "pd", "kp": -9.0}))
+    lost = with_loop_replay(found, evidence, away, away)
     assert lost.to_dict()["baseline"]["replay"] == {
         "unit": "rad",
         "train_rms": None,
@@ -387,8 +405,8 @@ def test_blocks_of_a_single_recording_are_told_apart_and_a_loop_may_run_away() -
     }
     assert "not replayed in closed loop: the simulated loop runs away" in lost.baseline.remarks[-1]  # type: ignore[union-attr]
     assert "runs away" in loop_words(lost)
-    open_loop = SimpleNamespace(plant=plant(), nuisances=Nuisances())
-    assert with_loop_replay(found, evidence, open_loop, open_loop) is found  # type: ignore[arg-type]
+    open_loop = builders.model(evidence, plant())
+    assert with_loop_replay(found, evidence, open_loop, open_loop) is found
 
 
 def test_the_command_line_prints_the_loop(

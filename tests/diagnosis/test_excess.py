@@ -1,13 +1,13 @@
 """Most of what names leave is told, even where a few coordinates show a little of it."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import evidence, model, search, view
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.diagnosis.adequacy.omnibus import Rest
 from stiction.diagnosis.findings import verdict
 from stiction.diagnosis.findings.words import sentence
 from stiction.diagnosis.phrases import NO_COORDINATE
@@ -41,17 +41,14 @@ def test_a_sentence_says_how_much_goes_with_nothing():
 
 
 @pytest.mark.parametrize("share", [0.05, 0.5])
-def test_a_coordinate_that_shows_little_hides_not_that_most_goes_with_nothing(monkeypatch, share):
-    """Where nothing is named: of a servo 5 % went with its load, and 95 % with nothing."""
-    monkeypatch.setattr(verdict, "_excess", lambda *_: 0.98)
-    monkeypatch.setattr(verdict, "at_moments", lambda *_: False)
-    monkeypatch.setattr(verdict, "outlying_recordings", lambda *_: ())
-    view = SimpleNamespace(coordinate=SimpleNamespace(name="load"), share=share)
-    left = SimpleNamespace(significant_views=lambda least: [view], leading_views=())
-    evidence = SimpleNamespace(shown=[], plant=SimpleNamespace(servo=True))
-    selection = SimpleNamespace(choices=[], models=[None], imitated=0.0)
-    told = verdict.unnamed_remainder(
-        evidence, selection, left, left, np.zeros((4, 2)), lambda: None
-    )
+def test_a_coordinate_that_shows_little_hides_not_that_most_goes_with_nothing(share):
+    """Where nothing is named: 5 % went with the effort, and 95 % with nothing."""
+    session = evidence()
+    white = np.random.default_rng(3).standard_normal(len(session.fitted))
+    # Noise leaves a fiftieth of the power.
+    null = np.sqrt(0.02) * white[:, None] * np.ones(4)
+    found = search(models=[model(session, residual=white)])
+    left = Rest((view("effort", share),))
+    told = verdict.unnamed_remainder(session, found, left, left, null, lambda: null)
     names = [each.coordinate for each in told]
-    assert names == ([NO_COORDINATE, "load"] if share < 0.1 else ["load"])
+    assert names == ([NO_COORDINATE, "effort"] if share < 0.1 else ["effort"])

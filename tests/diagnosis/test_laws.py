@@ -5,17 +5,20 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import cells, evidence, model, plant, recordings
 from tests.reference.ladder_spring import LadderSpring
 from tests.reference.laws import lugre
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
+from stiction.diagnosis.adequacy.lone import Lone
+from stiction.diagnosis.data.evidence import Evidence
+from stiction.diagnosis.data.gain import HeldOut
 from stiction.diagnosis.screening.model import Model
 from stiction.diagnosis.selection import laws
 from stiction.plant.stated import Friction
@@ -82,8 +85,8 @@ def test_each_law_is_driven_as_its_own_contact_has_to_be(
 def test_rows_that_test_take_a_law_away_that_is_surely_worse_there() -> None:
     source = np.random.default_rng(4)
     own, worse, better = (size * source.standard_normal(4000) for size in (1.0, 1.5, 0.7))
-    cells = SimpleNamespace(block=np.arange(4000) // 100, recording=np.zeros(4000, dtype=int))
-    test = cast("Any", SimpleNamespace(residuals=(own, worse, better), cells=cells))
+    ones = np.ones(4000)
+    test = HeldOut((own, worse, better), ones, ones, cells(np.arange(4000) // 100), ())
     gained = {"beside": 0.8, "z": 9.0}
     first = replace(rival("load_dependent", 1.0), **gained)
     second = replace(rival("dahl", 1.0), **{**gained, "beside": 0.5})
@@ -102,16 +105,11 @@ def test_rows_that_test_take_a_law_away_that_is_surely_worse_there() -> None:
 def test_of_laws_that_leave_as_little_the_simpler_one_is_named() -> None:
     """A law that holds another one within it leaves a little less of what that one made."""
 
-    def fitted_by(law: str, beside: float, numbers: int) -> laws.Rival:
-        found = rival(law, 1.0)
-        assert found.model is not None
-        paths = [f"friction.{k}" for k in range(numbers)] + ["body.inertia"]
-        found.model.evidence = SimpleNamespace(simulated=True)
-        found.model.solution = SimpleNamespace(variables=SimpleNamespace(paths=paths))
-        return replace(found, beside=beside, z=9.0)
-
-    simple, holding = fitted_by("dahl", 0.9990, 4), fitted_by("leuven", 0.9991, 7)
-    worse = fitted_by("bristle", 0.95, 2)
+    simple, holding, worse = (
+        replace(rival(law, 1.0), beside=beside, z=9.0)
+        for law, beside in (("dahl", 0.9990), ("leuven", 0.9991), ("coulomb", 0.95))
+    )
+    assert worse.parameters < simple.parameters < holding.parameters
     assert laws.better_laws([holding, simple, worse], 0, None, 0) == [simple, holding]
 
 
@@ -184,23 +182,18 @@ def test_a_law_that_leads_nowhere_is_fitted_to_its_end_only_where_it_was_asked_f
     assert found.better_law == ""
 
 
-def rival(law: str, power: float, **terms: float) -> laws.Rival:
-    """Another law that leaves so much power where it was fitted."""
-    plant = st.Plant.from_dict(
-        {
-            "motion": {"kind": "linear"},
-            "drive": {"kind": "prescribed_motion"},
-            "friction": {"law": law, **terms},
-        }
-    )
-    model = SimpleNamespace(
-        plant=plant,
-        # Beside the event a row in which no law differs from another.
-        residual=np.array([np.sqrt(power), 3.0]),
-        solution=SimpleNamespace(variables=SimpleNamespace(paths=["friction.coulomb"])),
-        evidence=SimpleNamespace(fitted=np.array([True, True]), shown=(), names=(), simulated=True),
-    )
-    return laws.Rival(law, True, cast("Model", model))
+EVENT = Lone("recording 1", 1.0, 2.0, "were fitted")
+
+
+def rival(law: str, power: float, *, session: Evidence | None = None, **terms: float) -> laws.Rival:
+    """Another law that leaves so much power in each row of ``EVENT``, and of others what all do."""
+    record = next(each for each in st.laws() if each.name == law)
+    own = {each.name: each.typical for each in record.parameters if not each.optional}
+    session = session or evidence(simulated=True)
+    inside = EVENT.rows(session.shown, session.names)
+    stated = plant(friction={"law": law, **own, **terms})
+    residual = np.where(inside, np.sqrt(power), 3.0)
+    return laws.Rival(law, True, model(session, stated, residual=residual))
 
 
 def test_advice_to_state_a_law_names_the_terms_that_made_it_better() -> None:
@@ -211,42 +204,47 @@ def test_advice_to_state_a_law_names_the_terms_that_made_it_better() -> None:
     assert row.reason.endswith("with compliance = 3.6e-07")
 
 
-def test_a_law_is_not_compared_along_readings_too_coarse_to_drive_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def read_coarsely() -> Evidence:
+    """A contact that yields, moved by sines and read by an encoder of 500 counts."""
+    yielding = {"law": "dahl", "coulomb": 0.2, "viscous": 0.02, "initial_stiffness": 100.0}
+    machine = plant(friction=yielding, sensor={"counts_per_rev": 500})
+    step, read = 2.0 * np.pi / 500, []
+    for each in recordings():
+        moved = machine.motor().simulate(each.input[:-1], each.dt).position
+        position = step * np.round(np.concatenate([[0.0], moved]) / step)
+        read.append(st.Recording(each.time, each.input, position, role=each.role))
+    return Evidence(machine, read)
+
+
+def test_a_law_is_not_compared_along_readings_too_coarse_to_drive_it() -> None:
     """A lugre that yielded within four counts "left eighty times" what coulomb did."""
-    monkeypatch.setattr(laws, "horizon_of", lambda *_: 0.1)
-    yields, rigid = rival("dahl", 3.0), rival("rigid_perfectly_plastic", 2.0)
-    for each in (yields, rigid):
-        assert each.model is not None
-        each.model.nuisances, each.model.evidence.simulated = None, False
-        each.model.evidence.train = each.model.evidence.forms = ()
+    coarse = read_coarsely()
+    yields = rival("dahl", 3.0, session=coarse, coulomb=0.2, initial_stiffness=100.0)
+    rigid = rival("rigid_perfectly_plastic", 2.0, session=coarse)
     rows = laws.law_rows([yields, rigid], 1, None, 0)
     told = {row.law: row.reason for row in rows}
     assert told["dahl"].startswith("cannot be compared here: it yields within a few counts")
     assert told["rigid_perfectly_plastic"].startswith("fitted")
     assert all(row.gain is None for row in rows)
     # What is simulated is no motion that was read.
-    yields.model.evidence.simulated = True
-    assert laws.law_rows([yields], 1, None, 0)[0].reason.startswith("fitted")
+    moves = rival("dahl", 3.0, coulomb=0.2, initial_stiffness=100.0)
+    assert laws.law_rows([moves], 1, None, 0)[0].reason.startswith("fitted")
 
 
 def test_the_law_that_follows_a_single_event_is_named_and_comes_first() -> None:
     own = rival("coulomb", 1.0).model
     assert own is not None
     tried = [rival("dahl", 0.95), rival("bristle", 860.0), rival("rate_and_state", 0.445)]
-    inside = SimpleNamespace(rows=lambda shown, names: np.array([True, False]))
-    event = cast("Any", inside)
-    said = laws.event_words([*tried, rival("gms", 1.0)], own, event, lambda *_: 0.5)
+    said = laws.event_words([*tried, rival("gms", 1.0)], own, EVENT, lambda *_: 0.5)
     assert "rate_and_state follows it most closely" in said
     assert "0.445 times the power that coulomb leaves there, and 0.5 times the power in" in said
-    short = laws.event_words(tried, own, event, lambda *_: None)
+    short = laws.event_words(tried, own, EVENT, lambda *_: None)
     assert short.endswith("leaves there. No other event confirms that.")
-    assert laws.event_words(tried[:2], own, event) == ""
-    rows = laws.law_rows(tried, 1, None, 0, beside=(own, event))
+    assert laws.event_words(tried[:2], own, EVENT) == ""
+    rows = laws.law_rows(tried, 1, None, 0, beside=(own, EVENT))
     assert [row.law for row in rows] == ["rate_and_state", "dahl", "bristle"]
     assert rows[-1].reason.endswith("over 100 times the power")
-    alike = laws.law_rows([rival("gms", 1.001)], 1, None, 0, beside=(own, event))[0]
+    alike = laws.law_rows([rival("gms", 1.001)], 1, None, 0, beside=(own, EVENT))[0]
     assert alike.reason.endswith("the same power")
 
 

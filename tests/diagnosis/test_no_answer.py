@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
+from tests.diagnosis import builders
 
 import stiction as st
 from stiction.diagnosis.data.evidence import Cells
@@ -39,12 +38,9 @@ def opened(*sizes: float) -> HeldOut:
 
 
 def selected(*names: str, known: bool = True) -> Search:
-    winners = [SimpleNamespace(name=name, candidate=name) for name in names]
-    choices: list[Any] = [SimpleNamespace(winner=winner) for winner in winners]
     rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
-    fitted = [SimpleNamespace(knows=lambda _, **__: known) for _ in names]
-    models: list[Any] = [SimpleNamespace(), *fitted]
-    return Search(models, choices, rows)
+    models = [builders.model(surely=known) for _ in ("", *names)]
+    return builders.search(*names, models=models, rows=rows)
 
 
 @pytest.mark.parametrize(
@@ -150,11 +146,10 @@ def test_motion_that_the_input_does_not_make_cannot_be_tested() -> None:
 def test_a_name_needs_a_plant_that_describes_the_machine(
     sizes: tuple[float, float], reason: str
 ) -> None:
-    one = np.random.default_rng(0).standard_normal(900)
-    held = np.arange(900) % 3 == 0
-    evidence: Any = SimpleNamespace(plans=[SimpleNamespace(held=held)], stack=lambda _: one)
+    evidence = builders.evidence()
+    one = effort()
     selection = selected("first")
-    models = [modelled(size * one) for size in sizes]
+    models = [builders.model(residual=size * one) for size in sizes]
     # Noise alone leaves as little everywhere.
     null = np.repeat(0.1 * one[:, None], 4, axis=1)
     found = reject_without_machine(replace(selection, models=models), evidence, null)
@@ -163,26 +158,29 @@ def test_a_name_needs_a_plant_that_describes_the_machine(
     assert len(found.models) == 1 + len(found.choices)
 
 
-def modelled(residual: np.ndarray) -> Any:
-    powers = np.sum(residual.reshape(-1, 30) ** 2, axis=1)
-    return SimpleNamespace(residual=residual, plant=None, blocks=(powers, powers))
+def effort() -> np.ndarray:
+    """What was measured of it in all rows."""
+    return builders.evidence().stack(lambda rows: rows.form.whole(builders.plant()))
 
 
 def test_one_block_takes_no_name_away() -> None:
-    source = np.random.default_rng(0)
-    before = source.standard_normal(900)
+    number, source = len(effort()), np.random.default_rng(0)
+    # Many blocks, of 30 rows each.
+    evidence = builders.evidence(cells=builders.cells(np.arange(number) // 30))
+    before = 0.03 * float(np.std(effort())) * source.standard_normal(number)
     after = 0.5 * before
     # One break-away that comes too early leaves more than all that was gained elsewhere.
-    after[:30] += 8.0
-    assert np.sum(after**2) > np.sum(before**2)
-    held = np.ones(900, dtype=bool)
-    evidence: Any = SimpleNamespace(
-        plans=[SimpleNamespace(held=held)], stack=lambda _: np.full(900, 30.0)
-    )
-    selection = replace(selected("first"), models=[modelled(before), modelled(after)])
+    held = evidence.plans[0].held
+    after[np.flatnonzero(held)[:30]] += 10.0 * float(np.std(before))
+    assert np.sum(after[held] ** 2) > np.sum(before[held] ** 2)
+
+    def left(*residuals: np.ndarray) -> Search:
+        models = [builders.model(evidence, residual=each) for each in residuals]
+        return replace(selected("first"), models=models)
+
     null = np.repeat(0.1 * before[:, None], 4, axis=1)
-    assert reject_without_machine(selection, evidence, null).choices
-    astray = replace(selection, models=[modelled(before), modelled(1.2 * before)])
+    assert reject_without_machine(left(before, after), evidence, null).choices
+    astray = left(before, 1.2 * before)
     assert not reject_without_machine(astray, evidence, null).choices
 
 
@@ -282,20 +280,13 @@ def test_a_machine_that_nothing_drives_cannot_be_used() -> None:
 
 
 @pytest.mark.parametrize(("left", "taken"), [(0.5, True), (1e-9, False)])
-def test_a_plant_of_which_nothing_is_left_is_no_better_one(
-    monkeypatch: pytest.MonkeyPatch, left: float, taken: bool
-) -> None:
+def test_a_plant_of_which_nothing_is_left_is_no_better_one(left: float, taken: bool) -> None:
     """A deadband wider than any input left nothing to drive, and nothing that was unexplained."""
-    own: Any = SimpleNamespace(power=1.0)
-    better: Any = SimpleNamespace(power=left, interrupted=False)
-    evidence: Any = SimpleNamespace(train=[], floor=0.4, simulated=False)
-    monkeypatch.setattr(trials, "from_elsewhere", lambda *_: better)
-    monkeypatch.setattr(
-        trials,
-        "Model",
-        lambda evidence, solution, _: SimpleNamespace(
-            evidence=evidence, solution=solution, power=solution.power, relative_input_power=1
-        ),
-    )
-    model: Any = SimpleNamespace(evidence=evidence, solution=own, nuisances=None)
-    assert (trials.escape_local_minimum(model) is not model) == taken
+    found = builders.model()
+    # Of what the other fit came to noise alone leaves less than twice as much, or far more.
+    session = builders.evidence(floor=0.4 / left * found.power)
+    model = builders.model(session)
+    other = builders.solution(model.plant, power=0.5)
+    assert (trials.better_of(model, other) is not model) == taken
+    gone = replace(other, power=1.0)
+    assert trials.better_of(model, gone) is model

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import fitted, model, number, plant, search, trial
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.diagnosis.screening.model import Model
 from stiction.diagnosis.selection import seconds
 from stiction.diagnosis.selection.replication import vanishes_where_active
+from stiction.diagnosis.selection.search import Search
 from stiction.diagnosis.selection.seconds import holds_more, tried_names
 from stiction.errors import InputError
 from stiction.recording.split import split
 
 BLOCKS, ROWS = 40, 50
 BLOCK = np.repeat(np.arange(BLOCKS), ROWS)
+LIMITS = ("drive_saturation", "voltage_limit")
 
 
 def diagnosed(seed: int, *hidden: tuple[Any, ...], base: str = "coulomb") -> st.Diagnosis:
@@ -111,16 +114,21 @@ def test_rows_that_decide_train_as_well_and_those_that_test_stay(roles: list[str
     assert joined.rules[-1].startswith("To decide, ")
 
 
-def looked(*names: str, unseen: bool = False) -> Any:
-    choices = [SimpleNamespace(winner=SimpleNamespace(name=name)) for name in names]
+def looked(*names: str, unseen: bool = False) -> Search:
     told = {"voltage_limit": 0.1} if unseen else {}
-    return SimpleNamespace(choices=choices, unseen=told, models=[None])
+    models = [*(model() for _ in names), limited(0.9, whole=True)]
+    return search(*names, models=models, unseen=told)
 
 
-def test_a_second_look_stands_where_it_holds_the_first_one_and_limits(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(seconds, "_is_known", lambda trial, model: trial.name != "warm_up")
+def limited(share: float, *, whole: bool = False, stderr: float = 0.02) -> Model:
+    """A model with limits that hold back this share; all of it from .95 on."""
+    value = 1.0 if whole else share
+    limits = [{"name": name, "share": value, "limit": 1.0} for name in LIMITS]
+    numbers = {f"{name}__share": number(share, stderr=stderr) for name in LIMITS}
+    return model(fitted=plant(effects=limits), fit_result=fitted(**numbers))
+
+
+def test_a_second_look_stands_where_it_holds_the_first_one_and_limits() -> None:
     limit = "voltage_limit"
     assert holds_more(looked(limit), looked())
     assert holds_more(looked("stribeck", limit), looked("stribeck"))
@@ -138,14 +146,10 @@ def test_a_second_look_stands_where_it_holds_the_first_one_and_limits(
     [(0.3, 0.02, False, True), (0.5, 3.0, False, False), (1.0, 44.0, True, True)],
 )
 def test_what_a_limit_holds_back_is_known_or_everything(
-    monkeypatch: pytest.MonkeyPatch, share: float, stderr: float, whole: bool, known: bool
+    share: float, stderr: float, whole: bool, known: bool
 ) -> None:
-    monkeypatch.setattr(seconds, "is_whole", lambda candidate, model: whole)
-    number = SimpleNamespace(value=share, stderr=stderr)
-    told = SimpleNamespace(parameters={"effects.drive_saturation.share": number})
-    candidate = SimpleNamespace(record=SimpleNamespace(limits=True), gains=("share",))
-    trial: Any = SimpleNamespace(name="drive_saturation", candidate=candidate)
-    assert seconds._is_known(trial, cast("Any", SimpleNamespace(fit_result=told))) is known
+    final = limited(share, whole=whole, stderr=stderr)
+    assert seconds._is_known(trial("drive_saturation"), final) is known
 
 
 def test_a_push_in_few_seconds_is_no_limit_of_the_drive_for_sure() -> None:

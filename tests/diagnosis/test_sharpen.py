@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.blind.draw import Case
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis import builders
 from tests.reference.session_reference import make_sessions
 
 import stiction as st
 from stiction.diagnosis.adequacy.omnibus import Rest
-from stiction.diagnosis.adequacy.view import View
 from stiction.diagnosis.findings import verdict
+from stiction.diagnosis.screening.block_gains import heldout_gain, log_gain
 from stiction.diagnosis.selection import sharpen
+from stiction.diagnosis.selection.decide import PENALTY
+from stiction.diagnosis.selection.search import Search
 from stiction.diagnosis.selection.sharpen import has_free_shapes
+from stiction.fitting.rows import Nuisances
 from stiction.plant.parameter import Parameter
 from stiction.plant.stated import Effect
 
@@ -78,30 +81,24 @@ def test_a_contact_rests_within_a_distance_of_its_own() -> None:
         (0.2, 4.0, False, False),
     ],
 )
-def test_a_shape_of_its_own_has_to_gain(
-    monkeypatch: pytest.MonkeyPatch, gain: float, z: float, known: bool, kept: bool
-) -> None:
+def test_a_shape_of_its_own_has_to_gain(gain: float, z: float, known: bool, kept: bool) -> None:
     record = next(r for r in st.effects() if r.name == "stribeck")
     names = (*record.gains, *(shape.parameter for shape in record.shapes))
     stated = {n: Parameter(1.0, fixed=n == "exponent") for n in names}
     drive, friction = {"input": "torque_nm", "gain": 1.0}, {"law": "coulomb"}
     plant = st.Plant.from_dict({"drive": drive, "body": {"inertia": 0.01}, "friction": friction})
     plant = replace(plant, effects=(Effect("stribeck", stated),))
-    monkeypatch.setattr(
-        sharpen,
-        "whole_fit",
-        lambda _, plant, __: SimpleNamespace(
-            plant=plant, nuisances=None, knows=lambda _, **__: known
-        ),
+    # Four blocks, of which every other one gains more than the others, as uncertain as z says.
+    one = np.ones(4)
+    left = one - gain * (1.0 + np.sqrt(3.0) / z * np.array([1.0, -1.0, 1.0, -1.0]))
+    before = builders.model(fitted=plant, blocks=(one, one))
+    after = {"blocks": (left, left), "surely": known}
+    bench = builders.screening(fits=lambda freed: builders.model(fitted=freed, **after))
+    assert heldout_gain(before, after_of := bench.fit(plant, Nuisances())) == pytest.approx(
+        (gain, z)
     )
-    monkeypatch.setattr(sharpen, "heldout_gain", lambda *_: (gain, z))
-    monkeypatch.setattr(sharpen, "log_gain", lambda *_: 2.0 * gain)
-    before = SimpleNamespace(plant=plant, nuisances=None)
-    winner: Any = SimpleNamespace(
-        name="stribeck", model=before, candidate=SimpleNamespace(record=record)
-    )
-    screening: Any = SimpleNamespace(evidence=None)
-    model = sharpen._freed(screening, winner)
+    assert log_gain(before, after_of) > PENALTY
+    model = sharpen._freed(bench, builders.trial("stribeck", refit=before))
     assert (model is not None) == kept
     if model is not None:
         (effect,) = model.plant.effects
@@ -137,37 +134,26 @@ def test_shapes_held_at_nothing_start_from_what_is_typical() -> None:
     assert one.effects[0].parameters["damping_ratio"] == Parameter(0.6)
 
 
-def test_names_that_explain_less_than_one_coordinate_shows_imitate(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    none = np.zeros(0)
+def leaving(*powers: float) -> Search:
+    """What a search found whose models leave these powers in each block."""
+    models = [builders.model(blocks=(np.ones(4), np.full(4, power))) for power in powers]
+    return builders.search(models=models)
 
-    def view(name: str, share: float) -> View:
-        coordinate: Any = SimpleNamespace(name=name, refines="", descriptive=False)
-        return View(coordinate, none, none, none, none, share, 0.02, 0.01)
 
-    monkeypatch.setattr(verdict, "heldout_gain", lambda *_: (0.1, 5.0))
-    selection: Any = SimpleNamespace(models=[None, None])
-    assert verdict._falls_short(selection, Rest((view("acceleration", 0.12),)))
-    assert not verdict._falls_short(selection, Rest((view("acceleration", 0.08),)))
+def test_names_that_explain_less_than_one_coordinate_shows_imitate() -> None:
+    def shown(share: float) -> Rest:
+        return Rest((builders.view("acceleration", share),))
+
+    named = leaving(1.0, 0.9)
+    assert verdict._falls_short(named, shown(0.12))
+    assert not verdict._falls_short(named, shown(0.08))
     # What noise reaches as well is no sign.
-    assert not verdict._falls_short(selection, Rest((view("acceleration", 0.01),)))
+    assert not verdict._falls_short(named, shown(0.01))
 
 
 def test_what_the_names_leave_as_it_was_is_no_sign_against_them() -> None:
-    none = np.zeros(0)
-
     def seen(**shares: float) -> Rest:
-        return Rest(
-            tuple(
-                View(
-                    cast("Any", SimpleNamespace(name=name)), none, none, none, none, s, 0.02, 0.002
-                )
-                for name, s in shares.items()
-            )
-        )
+        return Rest(tuple(builders.view(name, s, size=0.002) for name, s in shares.items()))
 
-    whole, less = (SimpleNamespace(blocks=(none, np.full(4, p))) for p in (1.0, 0.8))
-    selection: Any = SimpleNamespace(models=[whole, less])
-    before, after = seen(velocity=0.04, effort=0.1), seen(velocity=0.05, effort=0.06)
-    assert verdict._touched(selection, before, after) == {"effort"}
+    before, after = seen(acceleration=0.04, effort=0.1), seen(acceleration=0.05, effort=0.06)
+    assert verdict._touched(leaving(1.0, 0.8), before, after) == {"effort"}

@@ -1,12 +1,15 @@
 """Positioning as an environment: what Gymnasium asks for, and what a seed makes."""
 
 import json
-from types import SimpleNamespace
+from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
+from tests.report import canned
 
 import stiction as st
+from stiction.fitting.result import FitParameter
 
 gymnasium = pytest.importorskip("gymnasium")
 from gymnasium.utils.env_checker import check_env  # noqa: E402
@@ -112,12 +115,12 @@ def test_many_machines_go_as_one_does():
 
 def test_intervals_come_from_fits_diagnoses_and_their_files(tmp_path):
     rows = {"friction.coulomb": (0.1, 0.2), "friction.viscous": (float("-inf"), float("inf"))}
-    model = SimpleNamespace(
-        parameters={path: SimpleNamespace(ci95=ends) for path, ends in rows.items()}
-    )
+    numbers = {path: FitParameter(0.1, 0.0, ends, "", "", 0.1) for path, ends in rows.items()}
     wanted = {"friction.coulomb": (0.1, 0.2)}
-    assert intervals_of(model) == wanted
-    assert intervals_of(SimpleNamespace(extended=model)) == wanted
+    assert intervals_of(replace(fitted(), parameters=numbers)) == wanted
+    found = canned.diagnosis("missing_effect")
+    extended = replace(found.extended, parameters=numbers)
+    assert intervals_of(replace(found, extended=extended)) == wanted
     written = {"friction.coulomb": {"ci95": [0.1, 0.2]}, "friction.viscous": {"ci95": [None, None]}}
     for name, data in (("findings.json", {"extended": {"parameters": written}}),
                        ("fit.json", {"parameters": written})):  # fmt: skip
@@ -125,7 +128,8 @@ def test_intervals_come_from_fits_diagnoses_and_their_files(tmp_path):
         assert intervals_of(tmp_path / name) == wanted
 
 
-def test_a_fit_brings_its_plant_and_its_intervals():
+@cache
+def fitted():
     machine, source = plant(), np.random.default_rng(0)
     recordings = []
     for seed in range(2):
@@ -133,8 +137,11 @@ def test_a_fit_brings_its_plant_and_its_intervals():
         moved = machine.simulate(effort, 1e-3, outputs=["position"]).position
         read = np.concatenate([[0.0], moved[:-1]]) + 1e-6 * source.standard_normal(3000)
         recordings.append(st.Recording(1e-3 * np.arange(3000), effort, read, kind=f"{seed}"))
-    found = st.fit(machine, recordings)
-    env = Positioning(found)
+    return st.fit(machine, recordings)
+
+
+def test_a_fit_brings_its_plant_and_its_intervals():
+    env = Positioning(fitted())
     assert env.reset(seed=0)[1]["parameters"].keys() >= {"friction.coulomb", "body.inertia"}
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,22 +10,25 @@ import pytest
 
 import stiction as st
 from stiction.fitting.clock import bounded_plants, follows
-from stiction.fitting.rows import rows_of
+from stiction.fitting.rows import Rows, rows_of
 from stiction.recording import Part
 from stiction.residual.weak_form import WeakForm
 
 DT = 1e-3
 
 
-class Told:
+class Told(Rows):
     """Rows that leave what a plant tells, of samples of 1 ms."""
 
-    def __init__(self, left: Any) -> None:
-        self.left, self.weight, self.mask = left, 1.0, np.ones(4, dtype=bool)
-        self.form = SimpleNamespace(dt=DT)
+    def __init__(self, left: Callable[[st.Plant], float]) -> None:
+        time = DT * np.arange(1000)
+        machine = plant(1e-3, 0.01)
+        form = WeakForm(machine, st.Recording(time, np.cos(time), np.sin(time)))
+        super().__init__(machine, form, 0, np.ones(len(form), dtype=bool))
+        self.left = left
 
     def residual(self, plant: st.Plant, nuisances: Any) -> Any:
-        return np.full(4, self.left(plant))
+        return np.full(len(self.mask), self.left(plant))
 
 
 def plant(inertia: float, viscous: float) -> st.Plant:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from stiction.fitting.forms import as_session
 from stiction.recording import Recording
 from stiction.recording.checks import starts
 from stiction.recording.session_clock import subset
+from stiction.residual.weak_form import WeakForm
 from stiction.session import load
 
 
@@ -85,24 +85,22 @@ def test_a_recording_from_cold_sets_back_how_long_the_machine_has_been_on() -> N
 
 def test_path_and_clock_of_the_effects_begin_anew_from_cold() -> None:
     labels = ({"start_s": 4.0}, {"start_s": 10.0}, {"start_s": 70.0, "cold": True}, {"start_s": 90})
-    recordings = [recorded(seed, **each) for seed, each in enumerate(labels)]
-    forms = [
-        SimpleNamespace(
-            position=np.array([0.0, 2.0, -1.0]),
-            clock=None,
-            path=None,
-            count=0.0,
-            dt=1e-3,
-            flickers=False,
-        )
-        for _ in recordings
+    time = 0.01 * np.arange(300)
+    recordings = [
+        Recording(time, np.cos(time), (1.0 + k) * np.sin(time), **each)  # type: ignore[arg-type]
+        for k, each in enumerate(labels)
     ]
-    as_session(forms, recordings)  # type: ignore[arg-type]
+    friction = {"law": "coulomb", "coulomb": 0.1}
+    plant = st.Plant.from_dict({"drive": {"input": "torque_nm"}, "friction": friction})
+    forms = [WeakForm(plant, recording) for recording in recordings]
+    as_session(forms, recordings)
+    first, third = (float(np.sum(np.abs(np.diff(forms[k].position)))) for k in (0, 2))
+    assert first != third
     assert [(form.clock, form.path) for form in forms] == [
         (4.0, 0.0),
-        (10.0, 5.0),
+        (10.0, first),
         (0.0, 0.0),
-        (20.0, 5.0),
+        (20.0, third),
     ]
 
 

@@ -129,6 +129,18 @@ def borne_out(selection: Search, evidence: Evidence) -> Search:
     errors = [
         _rms(evidence, _runs(evidence, model, wanted)[0], parts) for model in selection.models
     ]
+    return drop_misleading(selection, errors)
+
+
+def drop_misleading(selection: Search, errors: Sequence[float | None]) -> Search:
+    """The selection without the last causes with which a loop errs clearly more.
+
+    Parameters
+    ----------
+    selection : Search
+    errors : sequence of float or None
+        Of the loop of each of its models; None where it could not be simulated.
+    """
     while selection.choices:
         after = errors[len(selection.choices)]
         before = [error for error in errors[: len(selection.choices)] if error is not None]
