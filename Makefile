@@ -31,7 +31,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # Fuzzing takes a fresh seed where none is given.
 GIVEN_SEED = $(if $(filter-out file,$(origin SEED)),--seed $(SEED))
 
-.PHONY: demo test test-slow site lint rust-tests python-tests gate blind ordinary fuzz wheel install-c bench format audit clean toolchain
+.PHONY: demo test test-fast test-slow site lint rust-tests python-tests gate blind ordinary fuzz wheel install-c bench format audit clean toolchain
 
 demo: $(INSTALLED)
 	$(BIN)/stiction demo --out $(OUT)
@@ -82,6 +82,15 @@ PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --max
 
 python-tests: $(READY)
 	$(PYTEST) -m 'not slow'
+
+# Before every commit: two minutes on two cores, as counted by the time of the processor. What is fast of the
+# diagnosis is what builds its records by tests/diagnosis/builders.py; whole diagnoses are in `make test`.
+FAST := $(addprefix tests/,house files recording plant session results report plan library core) \
+	$(patsubst %,tests/diagnosis/test_%.py,bursts excess less_than_a_turn own_coordinates pieces replication \
+		rounds screen sentence sharpen small_regressions traces words_of_machines)
+
+test-fast: $(READY)
+	$(PYTEST) -m 'not slow and not long' $(FAST)
 
 # What takes long and guards what changes seldom: Rust's tests with checks of overflow, the simulators that tests
 # use, the longest diagnoses, the table of properties, a wheel, the law of the page; then the site and the gate.

@@ -92,6 +92,7 @@ def work(places, **values):
     return np.interp(places, fine, lost)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("dt", "share"), [(1e-3, 2e-2), (1e-4, 2e-4)])
 def test_a_body_passes_many_breaks_in_a_step_and_loses_what_each_takes(dt, share):
     values = {

@@ -165,6 +165,7 @@ def test_friction_lags_behind_speed_the_more_the_faster_it_changes():
     assert 0.0 < slow < faster < fastest
 
 
+@pytest.mark.long
 def test_stick_slip_follows_the_oracle_and_has_the_period_of_its_two_phases():
     end, dt = 32.0, 2e-4
     ours = pulled(law(**SLOW), "fast", end, dt)

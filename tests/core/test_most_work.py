@@ -81,6 +81,7 @@ def test_ensembles_share_what_a_call_may_cost() -> None:
     assert np.isfinite(position).all()
 
 
+@pytest.mark.long
 def test_derivatives_and_windows_count() -> None:
     machine = stiff()
     motion = st.Motion(np.zeros(4001), np.full(4000, 0.1), 1.3e-3)

@@ -78,6 +78,7 @@ def test_sticking_machine_follows_runge_kutta_through_ramps_pulses_reversals_and
     assert run.statistics["reversals"] > 50
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(6))
 def test_friction_along_a_motion_follows_runge_kutta(seed):
     _, parameters, force = drawn_rig(seed)
@@ -131,6 +132,7 @@ def hooked_input(force, seed, n=60):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("integrator", ["fast", "reference"])
 @pytest.mark.parametrize("seed", range(4))
 def test_hooked_machine_follows_the_located_events(seed, integrator):

@@ -83,6 +83,7 @@ def test_a_contact_at_rest_heals_by_b_for_each_factor_e():
     assert np.diff(peaks) == pytest.approx(law.b * math.log(10.0), rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("integrator", ["fast", "reference"])
 @pytest.mark.parametrize("direct", [0.1, 0.06])
 @BOTH

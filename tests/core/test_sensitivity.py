@@ -210,6 +210,7 @@ def test_derivative_at_a_neutral_point_is_that_of_the_first_step_away_from_it(na
     assert np.abs(exact - chord).max() < 1e-3 * np.abs(chord).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["hook", "rated", "kept", "stribeck"])
 @pytest.mark.parametrize("dt", [1e-4, 2e-5])
 @pytest.mark.parametrize("integrator", ["fast", "reference"])

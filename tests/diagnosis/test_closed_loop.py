@@ -304,7 +304,7 @@ def test_what_leads_the_simulated_loop_astray_is_no_cause(
     names = ("first", "second")[: len(errors) - 1]
     rows = {name: CandidateRow(name, 0.5, 0.1, 0.2, "accepted") for name in names}
     selection = builders.search(*names, rows=rows)
-    found = loop.drop_misleading(selection, errors)
+    found = loop.drop_harmful(selection, errors)
     assert [choice.winner.name for choice in found.choices] == list(names[:kept])
     assert found.models == selection.models[: kept + 1]
     dropped = [found.rows[name].reason for name in names[kept:]]

@@ -33,7 +33,6 @@ from stiction.diagnosis.screening.candidates import (
 from stiction.diagnosis.screening.model import LEAST_GIVEN, Model, fit_model, with_effect
 from stiction.diagnosis.screening.regression import project
 from stiction.diagnosis.screening.screen import Score
-from stiction.diagnosis.selection import choose as choosing
 from stiction.diagnosis.selection import listing
 from stiction.diagnosis.selection.choose import Choice, choose, strangers
 from stiction.diagnosis.selection.decide import OUT_OF_RANGE, Trial
@@ -401,19 +400,35 @@ def test_a_candidate_encompasses_another_where_only_one_has_something_left_for_t
     assert Screening.encompasses(replace(builders.screening(), kept=kept), one, other) is told
 
 
-def test_only_what_passed_by_itself_leaves_waves_aside(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_what_passed_by_itself_leaves_waves_aside() -> None:
     """Of a name that was itself refused, or that stands for its family, nothing is left aside."""
-    monkeypatch.setattr(choosing, "by_chance", lambda *_: True)
-    winner, other = tried(1.0, 2, family="wave"), tried(0.97, 2, family="b")
+    one = np.ones(5)
+    blocks = np.linspace(1.0, 2.0, 30), np.linspace(2.0, 1.0, 30)
+    # A cogging of one period a turn, as near as few orders are, is an unbalance with an order.
+    waved = builders.plant(effects=[{"name": "cogging", "order": 1.0, "cosine": 0.1, "sine": 0.1}])
+    told = builders.fitted(cogging__order=builders.number(1.0, stderr=1e-4))
+    own = builders.model(blocks=blocks)
+    of_any_order = builders.model(fitted=waved, blocks=blocks, fit_result=told)
+
+    def unbalance(worth: float, reason: str = "", **stated: Any) -> Trial:
+        score = builders.score("gravity_unbalance", contributed=one)
+        return builders.trial(score, worth, reason, refit=own, **stated)
+
+    def cogging(worth: float) -> Trial:
+        any_order = replace(builders.candidate("cogging"), free=("order",))
+        score = builders.score(any_order, contributed=one)
+        return builders.trial(score, worth, refit=of_any_order)
+
+    winner, other = unbalance(1.0), cogging(0.97)
     chosen = choose([winner, other])
     assert chosen is not None
     assert (chosen.decided, chosen.rivals, chosen.aside) == (True, (), (other,))
     assert "by chance" in listing.row_of_trial(other, chosen).reason
-    refused = tried(0.97, 1, "its held-out gain is 1.80 standard errors", by_blocks=True)
-    chosen = choose([winner, refused])
+    refused = unbalance(1.0, "its held-out gain is 1.80 standard errors", by_blocks=True)
+    chosen = choose([other, refused])
     assert chosen is not None
     assert (chosen.winner, chosen.decided) == (refused, False)
-    chosen = choose([replace(winner, uneven=0.2), tried(0.97, 2, family="wave")])
+    chosen = choose([replace(winner, uneven=0.2), other])
     assert chosen is not None
     assert not chosen.decided
 

@@ -49,16 +49,13 @@ def rival(law: str, beside: float) -> Rival:
     ("beside", "outdone"), [((0.995, 0.2), True), ((0.98, 0.5), False), ((), False)]
 )
 def test_a_law_is_outdone_where_another_leaves_a_hundredth(
-    beside: tuple[float, ...], outdone: bool, monkeypatch: pytest.MonkeyPatch
+    beside: tuple[float, ...], outdone: bool
 ) -> None:
     rivals = [rival(law, each) for law, each in zip(("coulomb", "lugre"), beside, strict=False)]
-    monkeypatch.setattr(restated, "rivals_of", lambda *_, **__: rivals)
-    found = search("drive_deadband")
-    assert restated.is_outdone(found) is outdone
+    assert restated.outdo(rivals) is outdone
 
 
-def test_half_a_comparison_outdoes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(restated, "rivals_of", lambda *_, **__: [])
+def test_half_a_comparison_outdoes_nothing() -> None:
     found = search(interrupted=True)
     with pytest.raises(KeyboardInterrupt):
         restated.is_outdone(found)

@@ -95,6 +95,7 @@ def test_an_entry_says_where_its_numbers_come_from(path):
         assert all(each.ci95 or found.notes for each in found.numbers.values())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_an_entry_is_a_plant_that_moves_and_resists(path):
     plant = read_entry(path).plant

@@ -25,6 +25,7 @@ def numbers(table: Any, path: str = "") -> dict[str, float]:
     return {key: value for pair in pairs for key, value in pair.items()}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in RECIPES],

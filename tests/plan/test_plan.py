@@ -88,6 +88,7 @@ def followed(plant: st.Plant, reference: np.ndarray, limit: float, dt: float) ->
     return rows
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", SEEDS)
 def test_ten_random_plants_stay_within_their_limits(seed: int) -> None:
     plant, limits = drawn(seed)
@@ -109,6 +110,7 @@ def test_ten_random_plants_stay_within_their_limits(seed: int) -> None:
             assert most <= limit * (1.0 + 1e-9), (signal.name, name, most, limit)
 
 
+@pytest.mark.long
 def test_inputs_stay_within_limits_on_an_independent_machine() -> None:
     plant = st.Plant.from_dict(
         {
@@ -235,6 +237,7 @@ def test_a_plan_prints_as_a_table_in_words(made: Plan) -> None:
         assert [float(each) for each in numbers] == pytest.approx(asked, rel=1e-2)
 
 
+@pytest.mark.long
 def test_files_can_be_read_back(made: Plan, tmp_path: Path) -> None:
     where = made.save(tmp_path / "plan")
     read = np.loadtxt(where / "signals" / "chirp-test.csv", delimiter=",", skiprows=1)

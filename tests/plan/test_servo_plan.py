@@ -50,6 +50,7 @@ def drawn(seed: int) -> tuple[Servo, st.Plant, dict[str, float]]:
     return servo, plant, {"position": between(0.3, 3.0), "speed": between(0.5, 8.0)}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(10))
 def test_ten_random_servos_stay_within_their_limits(seed: int) -> None:
     servo, plant, limits = drawn(seed)

@@ -46,6 +46,7 @@ def recorded(servo, seed, **more):
     return st.Recording(DT * np.arange(len(target)), target, position, kind=f"{seed}", **more)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "change",
     [{}, {"proportional": 4.0}, {"duty_limit": 0.3}, {"current_limit": 0.35}],
@@ -161,6 +162,7 @@ def test_a_fit_finds_the_torque_constant_from_a_known_payload(tmp_path):
     )
 
 
+@pytest.mark.long
 def test_a_goal_that_arrives_late_is_named():
     late = [
         recorded(Servo(late=6), seed, role=role)
@@ -199,6 +201,7 @@ def test_a_step_at_a_time_holds_the_goal_back_as_the_run_does():
     assert np.array_equal(steps, run.position)
 
 
+@pytest.mark.long
 def test_a_goal_that_is_held_back_is_named():
     found = st.diagnose(plant(), session(Servo(fastest=2.0)), surrogates=8)
     assert [cause.name for cause in found.effects] == ["goal_rate_limit"]
@@ -207,12 +210,14 @@ def test_a_goal_that_is_held_back_is_named():
     assert found.extended.replay.heldout_rms < 0.05 * found.baseline.replay.heldout_rms
 
 
+@pytest.mark.long
 def test_two_causes_before_the_drive_are_told_apart():
     found = st.diagnose(plant(), session(Servo(fastest=2.0, late=6)), surrogates=8)
     assert {cause.name for cause in found.effects} == {"goal_rate_limit", "input_delay"}
     assert found.verdict == "missing_effect"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_a_servo_that_lacks_nothing_gets_no_name(seed):
     machine = Servo(proportional=1.2, coulomb=0.01 * (1 + seed), inertia=0.001 * (1 + seed))
@@ -228,6 +233,7 @@ def test_a_servo_that_lacks_nothing_gets_no_name(seed):
     assert found.verdict == "nothing_missing", found.sentence
 
 
+@pytest.mark.long
 def test_gear_losses_are_named():
     found = st.diagnose(plant(), session(Servo(gear_loss=0.3)), surrogates=8)
     assert [cause.name for cause in found.effects] == ["load_dependent_friction"]

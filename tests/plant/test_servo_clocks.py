@@ -56,6 +56,7 @@ def uneven(rows: int) -> np.ndarray:
     return np.where(np.random.default_rng(5).random(rows) < 0.7, DT, 1.006 * DT)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("steps", [even, uneven])
 def test_a_fit_of_an_uneven_clock_ends_in_the_same_machine(steps: Any) -> None:
     """A goal that is held to even stamps came half a sample late, and was taken for friction."""
@@ -97,6 +98,7 @@ def test_a_goal_that_comes_a_part_of_a_sample_late_is_no_friction() -> None:
     assert values["viscous"] == pytest.approx(late.viscous, rel=0.2)
 
 
+@pytest.mark.long
 def test_what_a_servo_answers_to_its_noise_is_no_response() -> None:
     """Smooth goals alone: a third of what noise left went with the effort that it had made."""
     found = st.diagnose(st.Plant.from_dict(PLANT), session(TRUE, even(1600)))

@@ -51,6 +51,7 @@ def recording(effort: np.ndarray, position: np.ndarray, **more: Any) -> Recordin
     return Recording(np.arange(len(effort)) * DT, effort + noise, position, **more)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("number", "length", "times"), [(20, 1, 5.0), (5, 3, 5.0), (3, 1, 8.0)])
 def test_what_the_machine_got_stays_and_what_it_did_not_goes(
     number: int, length: int, times: float
@@ -73,6 +74,7 @@ def test_what_the_machine_got_stays_and_what_it_did_not_goes(
     assert said.verdict == "fine"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("samples", [10, 50, 90])
 def test_an_impulse_that_comes_late_is_one_all_the_same(samples: int) -> None:
     effort = driven()
@@ -81,6 +83,7 @@ def test_an_impulse_that_comes_late_is_one_all_the_same(samples: int) -> None:
     assert impulses([recording(logged, moved(late))])[0].got is not False
 
 
+@pytest.mark.long
 def test_what_a_limit_leaves_of_an_impulse_is_no_failed_reading() -> None:
     effort = driven()
     logged = bursts(effort, 20, 3, 5.0)
@@ -91,6 +94,7 @@ def test_what_a_limit_leaves_of_an_impulse_is_no_failed_reading() -> None:
     assert "answers to a part of that" in said.means
 
 
+@pytest.mark.long
 def test_no_other_recording_takes_taps_away_that_moved_the_machine() -> None:
     """Between taps there is no usual input, against which they could be told to be whole."""
     taps = bursts(np.full(ROWS, 1e-3), 80, 3, 8000.0)
@@ -112,6 +116,7 @@ def test_at_rest_the_other_recordings_of_a_session_tell() -> None:
     assert [each.got for each in impulses([still, failed])] == [False, False]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["noise", "steps", "corners", "coarse"])
 def test_ordinary_inputs_hold_no_impulses(name: str) -> None:
     time = np.arange(ROWS) * DT

@@ -28,6 +28,7 @@ def found(recording: st.Recording) -> FitResult:
     return st.fit(st.Plant.from_dict(table), recording)
 
 
+@pytest.mark.long
 def test_the_pairs_that_hang_together_most_stand_first(
     found: FitResult, recording: st.Recording
 ) -> None:

@@ -20,6 +20,7 @@ def late() -> Diagnosis:
     return st.diagnose(plant(), session(Servo(late=6)), surrogates=8)
 
 
+@pytest.mark.long
 def test_the_page_of_a_servo_claims_no_measured_effort(late: Diagnosis, tmp_path: Path) -> None:
     text = write(late, tmp_path).read_text("utf-8")
     assert "measured effort" not in text.lower()
@@ -42,6 +43,7 @@ def test_errors_of_a_servo_are_those_of_its_loop(late: Diagnosis) -> None:
     assert "% of the motion" in str(late)
 
 
+@pytest.mark.long
 def test_a_fit_of_a_servo_tells_the_error_of_its_position() -> None:
     found = st.fit(plant(), session(Servo()))
     assert "effort error" not in str(found)

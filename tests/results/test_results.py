@@ -77,6 +77,7 @@ def ensemble_run() -> st.EnsembleRun:
     return st.simulate_ensemble(motor, np.ones(5), 1e-3, parameters={"coulomb": [0.1, 0.2]})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("again", AGAIN)
 def test_plants_sessions_and_results_come_back_from_copies_and_pickles(again) -> None:
     assert again(plant()) == plant()

@@ -13,10 +13,10 @@ from ..plant import Plant
 from .findings.conclude import MESSAGE, Conclusion
 from .findings.result import Diagnosis
 from .records import LawRow, Unexplained
-from .selection.laws import HOPELESS, THE_LAW, better_laws, rivals_of
+from .selection.laws import HOPELESS, THE_LAW, Rival, better_laws, rivals_of
 from .selection.search import Search
 
-__all__ = ["diagnose_again_at_the_end", "diagnose_again_early", "is_outdone"]
+__all__ = ["diagnose_again_at_the_end", "diagnose_again_early", "is_outdone", "outdo"]
 
 _logger = logging.getLogger(__name__)
 
@@ -34,7 +34,12 @@ def is_outdone(found: Search) -> bool:
     rivals = rivals_of(found, (), lacking=True)
     if found.interrupted:
         raise KeyboardInterrupt
-    better = better_laws(rivals, len(found.models) - 1, None, 0)
+    return outdo(rivals)
+
+
+def outdo(rivals: Sequence[Rival]) -> bool:
+    """Whether one of these laws leaves next to nothing of what the plant's own does."""
+    better = better_laws(rivals, 0, None, 0)
     return bool(better) and HOPELESS * (1.0 - better[0].beside) < 1.0
 
 

@@ -129,10 +129,10 @@ def borne_out(selection: Search, evidence: Evidence) -> Search:
     errors = [
         _rms(evidence, _runs(evidence, model, wanted)[0], parts) for model in selection.models
     ]
-    return drop_misleading(selection, errors)
+    return drop_harmful(selection, errors)
 
 
-def drop_misleading(selection: Search, errors: Sequence[float | None]) -> Search:
+def drop_harmful(selection: Search, errors: Sequence[float | None]) -> Search:
     """The selection without the last causes with which a loop errs clearly more.
 
     Parameters
