@@ -72,7 +72,9 @@ def test_a_wrong_inertia_is_told_with_what_it_would_be(times: float) -> None:
 
 def test_rows_that_are_simulated_and_numbers_that_are_free_are_not_asked() -> None:
     free, held = builders.plant(), builders.plant(body={"inertia": {"value": 1.0, "fixed": True}})
-    for own, simulated in ((free, False), (held, True)):
+    drive = {"kind": "prescribed_motion"}
+    prescribed = builders.plant(drive=drive, body={"inertia": {"value": 1.0, "fixed": True}})
+    for own, simulated in ((free, False), (held, True), (prescribed, False)):
         final = builders.model(builders.evidence(simulated=simulated), own)
         assert fixed_parameters(builders.search(models=[final])) == []
 
