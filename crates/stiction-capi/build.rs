@@ -3,11 +3,15 @@
 use std::env;
 
 fn main() {
+    // As install.sh names the files.
+    let major = env::var("CARGO_PKG_VERSION_MAJOR").unwrap_or_default();
     println!("cargo:rerun-if-changed=build.rs");
     match env::var("CARGO_CFG_TARGET_OS").as_deref() {
-        Ok("linux") => println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libstiction.so.0"),
+        Ok("linux") => println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libstiction.so.{major}"),
         Ok("macos") => {
-            println!("cargo:rustc-cdylib-link-arg=-Wl,-install_name,@rpath/libstiction.0.dylib");
+            println!(
+                "cargo:rustc-cdylib-link-arg=-Wl,-install_name,@rpath/libstiction.{major}.dylib"
+            );
         }
         _ => (),
     }

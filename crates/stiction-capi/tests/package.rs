@@ -120,7 +120,7 @@ fn cmake_finds_both_libraries() {
     let text = format!(
         "cmake_minimum_required(VERSION 3.15)\nproject(plants C CXX)\n\
          set(CMAKE_CXX_STANDARD 11)\n\
-         find_package(stiction 0.1 REQUIRED)\n\
+         find_package(stiction 1.0 REQUIRED)\n\
          add_executable(shared \"{0}/cpp/plant.cpp\")\n\
          target_link_libraries(shared PRIVATE stiction::stiction)\n\
          add_executable(static \"{0}/c/plant.c\")\n\
