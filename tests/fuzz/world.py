@@ -165,6 +165,8 @@ def robot_signal() -> Any:
 
 PRODUCERS: dict[str, Callable[[], Any]] = {
     "Trajectory": lambda: motor().simulate(wave(50), 1e-3),
+    "EffortResidual": lambda: stiction.residual.effort_residual(plant(), recording()),
+    "FreeRun": lambda: stiction.residual.free_run(plant(), recording()),
     "EnsembleRun": lambda: st.simulate_ensemble(motor(), np.ones((2, 5)), 1e-3),
     "Ensemble": lambda: st.Ensemble(motor(), 3),
     "CurveFit": lambda: st.fit_curve(

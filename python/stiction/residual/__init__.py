@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from .._support.lazy import lazy
 
 if TYPE_CHECKING:
-    from .effort import EffortResidual, FreeRun, effort_residual, free_run, input_run
+    from .effort import EffortResidual, FreeRun, effort_residual, free_run
 
-__all__ = ["EffortResidual", "FreeRun", "effort_residual", "free_run", "input_run"]
+__all__ = ["EffortResidual", "FreeRun", "effort_residual", "free_run"]
 
 __getattr__, __dir__ = lazy(__name__, dict.fromkeys(__all__, "effort"))

@@ -9,6 +9,8 @@ import numpy as np
 
 from .._native import Motion
 from .._support.arrays import FloatArray
+from .._support.given import instance, number
+from .._support.keywords import explain_keywords
 from .._support.wording import NO_POSITION
 from ..errors import InputError
 from ..recording.checks import without_failures, without_spikes
@@ -197,6 +199,7 @@ class FreeRun:
         return plot.overlay(self.time, self.measured, self.simulated, unit=self.unit)
 
 
+@explain_keywords
 def effort_residual(
     plant: Plant,
     recording: Recording,
@@ -222,8 +225,11 @@ def effort_residual(
     Raises
     ------
     InputError
-        No position, no input, or too short for the kernel.
+        No position, no input, or too short for the kernel; an argument that cannot be used.
     """
+    _check(plant, recording, start, clock, path)
+    if support is not None and not 0.0 < number(support, "support") < np.inf:
+        raise InputError(f"support = {support:g}; give the width of the kernel in s, above 0")
     (recording,) = without_failures([recording])
     form = WeakForm(plant, recording, support=support)
     form.clock, form.path = clock, path
@@ -231,6 +237,7 @@ def effort_residual(
     return EffortResidual(form.time, measured, model, form.kernel.support, form.effort_unit)
 
 
+@explain_keywords
 def free_run(
     plant: Plant,
     recording: Recording,
@@ -260,8 +267,10 @@ def free_run(
     Raises
     ------
     InputError
-        No position or no input; a plant without inertia or of prescribed motion.
+        No position or no input; a plant without inertia or of prescribed motion; an argument that
+        cannot be used.
     """
+    _check(plant, recording, start, clock, path)
     position = _position(recording)
     (recording,) = without_failures([recording])
     # A reading that failed for a sample is no motion that a simulation could miss.
@@ -300,7 +309,26 @@ def input_run(plant: Plant, recording: Recording) -> Trajectory:
     InputError
         No input; a plant without inertia or of prescribed motion.
     """
+    _check(plant, recording)
     return _simulated(_driven(plant, recording).motor(), recording)
+
+
+def _check(
+    plant: Plant, recording: Recording, start: Start = None, clock: float = 0.0, path: float = 0.0
+) -> None:
+    """Refuse what is none of these."""
+    # As late as it is needed: both are made of what this room stands beside.
+    from ..plant import Plant
+    from ..recording import Recording
+
+    instance(plant, Plant, "plant", "a Plant, as Plant.load returns it")
+    instance(recording, Recording, "recording", "a Recording, as Recording.load returns it")
+    if start is not None:
+        for name, value in instance(start, dict, "start", "a dict of numbers by name").items():
+            number(value, f"start[{name!r}]")
+    for name, value in (("clock", clock), ("path", path)):
+        if not np.isfinite(number(value, name)):
+            raise InputError(f"{name} = {value}; give a finite number")
 
 
 def _driven(plant: Plant, recording: Recording) -> Plant:
