@@ -16,6 +16,7 @@ import cyclopts
 import pytest
 from tests.cli.desk import Desk
 
+import stiction as st
 from stiction import cli
 from stiction.cli import run
 from stiction.cli.app import VERBS, Verb, build
@@ -77,7 +78,7 @@ def test_help_imports_nothing_that_takes_long(words: tuple[str, ...]) -> None:
 def test_the_version_says_which_build_this_is(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["--version"]) == 0
     first, build_of, threads, stands_on, *extras = capsys.readouterr().out.splitlines()
-    assert first.startswith("stiction 0.")
+    assert first == f"stiction {st.__version__}"
     assert build_of.startswith(("build: release", "build: editable", "build: debug"))
     assert threads.partition(": ")[2].isdigit()
     assert stands_on.startswith("python 3.")

@@ -80,7 +80,7 @@ PUSHED = np.full(20_000, 0.1)
 CALLS = {
     "simulate": lambda m, _: m.simulate(PUSHED, 2e-4, outputs=()),
     "simulate, reference": lambda m, _: m.simulate(PUSHED, 1e-4, outputs=()),
-    "simulate_segments": lambda m, _: m.simulate_segments([250.0], [0.1]),
+    "simulate_segments": lambda m, _: m.simulate_segments([180.0], [0.1]),
     "follow": lambda m, motion: [m.follow(motion) for _ in range(20)],
     "sensitivity": lambda m, _: m.sensitivity(PUSHED, 4e-5, ["friction.coulomb"]),
     "signatures": lambda m, motion: [

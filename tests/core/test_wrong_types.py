@@ -44,12 +44,12 @@ def streamed(chunks, **keywords):
 
 REFUSED = {
     "fit of a file": (lambda: st.fit("p.toml", recording()), "plant is 'p.toml'; give a Plant"),
-    "fit to a file": (lambda: st.fit(plant(), "s.toml"), "a recording is 's.toml'; give a Session"),
+    "fit to a file": (lambda: st.fit(plant(), "s.toml"), "give what stiction.load('s.toml')"),
     "fit the wrong way round": (lambda: st.fit(recording(), plant()), "plant is a Recording"),
     "evaluations": (lambda: st.fit(plant(), recording(), max_evaluations="a"), "max_evaluations ="),
     "diagnosis of a word": (lambda: st.diagnose("x", recording()), "plant is 'x'; give a Plant"),
     "diagnosis of nothing": (lambda: st.diagnose(None, None), "there are no recordings"),
-    "session of a word": (lambda: st.Session("abc"), "a recording is 'abc'"),
+    "session of a word": (lambda: st.Session("abc"), "give what stiction.load('abc') returns"),
     "session of a number": (lambda: st.Session([1]), "a recording is 1"),
     "session's plant": (lambda: st.Session([recording()], plant="x"), "plant is 'x'; give a Plant"),
     "load of nothing": (lambda: st.load(None), "None is not a path"),

@@ -17,11 +17,11 @@ void stiction_init(stiction_state *s);
 /* Puts the body where an encoder sees it, before a step; the contact does not move. */
 void stiction_set_position(stiction_state *s, STICTION_REAL position);
 #endif
-/* Once per sample of dt, over which the velocity is held. Returns the friction at its end, positive
- * when it resists positive motion, less the efforts that effects add. effort: all else that acts on
- * the body, gravity included, positive along +x; at velocity 0 a contact with true stick returns it,
- * up to break-away. load: the part of it that loads the contact from outside. A NaN that is passed
- * stays in the state until stiction_init. */
+/* Once per sample of dt, over which the velocity is held. Returns the friction at its end,
+ * positive when it resists positive motion, less the efforts that effects add. effort: all else
+ * that acts on the body, gravity included, positive along +x; at velocity 0 a contact with true
+ * stick returns it, up to break-away. load: the part of it that loads the contact from outside.
+ * A NaN that is passed stays in the state until stiction_init. */
 STICTION_REAL stiction_step(stiction_state *s, STICTION_REAL velocity, STICTION_REAL dt,
                             STICTION_REAL effort, STICTION_REAL load, STICTION_REAL temperature);
 
