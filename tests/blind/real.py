@@ -52,7 +52,7 @@ class Machine:
 
 def data_folder() -> Path:
     """Where real recordings are, whether or not it is there."""
-    named = Path(os.environ.get("STICTION_DATA", "../shared/data"))
+    named = Path(os.environ.get("STICTION_DATA") or "../shared/data")
     return named if named.is_absolute() else REPOSITORY / named
 
 
