@@ -5,7 +5,8 @@ import pytest
 
 import stiction as st
 from stiction.fitting.result import FitParameter
-from stiction.fitting.waves import waves_of
+from stiction.fitting.statistics import correlations
+from stiction.fitting.waves import as_waves, waves_of
 
 PATHS = ("effects.cogging.cosine_2", "friction.coulomb", "effects.cogging.sine_2")
 
@@ -32,6 +33,17 @@ def test_errors_are_those_of_drawn_parts():
         assert wave.value == pytest.approx(np.mean(numbers), abs=0.1 * wave.stderr)
         assert wave.stderr == pytest.approx(np.std(numbers), rel=0.02)
         assert wave.ci95[1] - wave.value == pytest.approx(2.0 * wave.stderr)
+
+
+def test_correlations_are_those_of_amplitude_and_phase():
+    rng = np.random.default_rng(5)
+    root = np.array([[2.0, 0.0, 0.0], [0.5, 1.0, 0.0], [-1.0, 0.3, 1.5]]) * 1e-4
+    covariance = root @ root.T
+    value = np.array([0.03, 0.4, -0.05])
+    parameters = {path: part(float(each), 1e-3) for path, each in zip(PATHS, value, strict=True)}
+    cosine, other, sine = (value + rng.standard_normal((100_000, 3)) @ root.T).T
+    drawn = np.corrcoef([np.hypot(cosine, sine), other, np.arctan2(sine, cosine)])
+    assert correlations(as_waves(parameters, covariance)) == pytest.approx(drawn, abs=0.02)
 
 
 def test_a_wave_of_which_one_part_was_fitted_is_told_by_its_part():

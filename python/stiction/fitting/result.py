@@ -16,7 +16,8 @@ from .._support.frozen import ByPath, Frozen, freeze
 from .._support.json_text import json_of
 from ..plant import Plant
 from ..residual.compared import comparison_of
-from .waves import amplitude_of, parts_of, phase_of, waves_of
+from .statistics import correlations
+from .waves import amplitude_of, as_waves, parts_of, phase_of, waves_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,11 +179,10 @@ class FitResult:
         waves = self.waves
         for path, p in self.parameters.items():
             parts = parts_of(path)
-            names = [] if parts is None else [amplitude_of(parts), phase_of(parts)]
-            if parts is None or names[0] not in waves:
+            if parts is None or amplitude_of(parts) not in waves:
                 yield path, p
             elif path == parts[0]:
-                yield from ((name, waves[name]) for name in names)
+                yield from ((name, waves[name]) for name in (amplitude_of(parts), phase_of(parts)))
 
     def _headline(self) -> list[str]:
         by = comparison_of(self.plant)
@@ -217,12 +217,19 @@ class FitResult:
 
     def _told_correlations(self) -> list[str]:
         """The largest correlations of parameters that are known at all, in one sentence."""
-        names = list(self.parameters)
+        waves = self.waves
+        names = []
+        for path in self.parameters:
+            parts = parts_of(path)
+            if parts is not None and amplitude_of(parts) in waves:
+                path = amplitude_of(parts) if path == parts[0] else phase_of(parts)
+            names.append(path)
+        between = correlations(as_waves(self.parameters, self.covariance))
         found = [
             (abs(r), f"{names[i]} and {names[k]} {r:+.2f}")
             for i in range(len(names))
             for k in range(i + 1, len(names))
-            if LEAST_CORRELATION <= abs(r := float(self.correlations[i, k])) < math.inf
+            if LEAST_CORRELATION <= abs(r := float(between[i, k])) < math.inf
         ]
         told = [pair for _, pair in sorted(found, reverse=True)[:MOST_CORRELATIONS]]
         if not told:

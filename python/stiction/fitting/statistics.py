@@ -151,7 +151,7 @@ def differ(values: FloatArray, covariance: FloatArray, blocks: int) -> bool:
 
 def correlations(covariance: FloatArray) -> FloatArray:
     """Correlation matrix; 0 where a parameter has no variance, or one that nothing tells."""
-    size = np.sqrt(np.diag(covariance))
+    size = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     size[(size == 0.0) | ~np.isfinite(size)] = np.inf
     known = np.where(np.isfinite(covariance), covariance, 0.0)
     return np.asarray(known / np.outer(size, size))

@@ -7,15 +7,17 @@ the amplitude is known to a percent.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from .._support.arrays import FloatArray
 
 if TYPE_CHECKING:
     from .result import FitParameter
 
-__all__ = ["amplitude_of", "parts_of", "phase_of", "waves_of"]
+__all__ = ["amplitude_of", "as_waves", "parts_of", "phase_of", "waves_of"]
 
 _TAILS: Final = ("", "_2")
 
@@ -69,24 +71,14 @@ def waves_of(
     dict of str to FitParameter
         By path, such as ``effects.cogging.amplitude`` and ``effects.cogging.phase`` in rad.
     """
-    order = {path: k for k, path in enumerate(parameters)}
+    covariance = as_waves(parameters, covariance)
     found: dict[str, FitParameter] = {}
-    for path in parameters:
-        parts = parts_of(path)
-        if parts is None or path != parts[0] or parts[1] not in parameters:
-            continue
+    for cosine_at, sine_at, parts in _pairs(parameters):
         cosine, sine = parameters[parts[0]], parameters[parts[1]]
-        size = math.hypot(cosine.value, sine.value)
-        if size == 0.0:
-            continue
-        ends = [order[part] for part in parts]
-        a, b = cosine.value / size, sine.value / size
-        spread = covariance[ends][:, ends]
-        along = a * a * spread[0, 0] + 2.0 * a * b * spread[0, 1] + b * b * spread[1, 1]
-        across = b * b * spread[0, 0] - 2.0 * a * b * spread[0, 1] + a * a * spread[1, 1]
+        size, phase = math.hypot(cosine.value, sine.value), math.atan2(sine.value, cosine.value)
         kind, width = type(cosine), _width(cosine, sine)
         bound = cosine.at_bound or sine.at_bound
-        error = math.sqrt(max(along, 0.0))
+        error = math.sqrt(max(covariance[cosine_at, cosine_at], 0.0))
         found[amplitude_of(parts)] = kind(
             value=size,
             stderr=error,
@@ -95,7 +87,7 @@ def waves_of(
             at_bound=bound,
             start=math.hypot(cosine.start, sine.start),
         )
-        phase, error = math.atan2(b, a), math.sqrt(max(across, 0.0)) / size
+        error = math.sqrt(max(covariance[sine_at, sine_at], 0.0))
         found[phase_of(parts)] = kind(
             value=phase,
             stderr=error,
@@ -105,6 +97,45 @@ def waves_of(
             start=math.atan2(sine.start, cosine.start),
         )
     return found
+
+
+def as_waves(parameters: Mapping[str, FitParameter], covariance: FloatArray) -> FloatArray:
+    """Covariance to first order of the amplitudes and phases in place of cosines and sines.
+
+    Parameters
+    ----------
+    parameters : Mapping of str to FitParameter
+        By path. A wave of which one part was fitted, or whose amplitude is 0, stays as it is.
+    covariance : numpy.ndarray, shape (p, p)
+        In their order.
+
+    Returns
+    -------
+    numpy.ndarray, shape (p, p)
+        In the same order.
+    """
+    covariance = np.array(covariance, dtype=float)
+    for cosine_at, sine_at, parts in _pairs(parameters):
+        ends = [cosine_at, sine_at]
+        cosine, sine = parameters[parts[0]].value, parameters[parts[1]].value
+        size = math.hypot(cosine, sine)
+        turn = np.array([[cosine, sine], [-sine / size, cosine / size]]) / size
+        with np.errstate(invalid="ignore"):  # of what nothing tells the covariance is infinite
+            covariance[ends] = turn @ covariance[ends]
+            covariance[:, ends] = covariance[:, ends] @ turn.T
+    return covariance
+
+
+def _pairs(parameters: Mapping[str, FitParameter]) -> Iterator[tuple[int, int, Parts]]:
+    """Where the parts of each wave stand that is there and of which both were fitted."""
+    order = {path: k for k, path in enumerate(parameters)}
+    for path, at in order.items():
+        parts = parts_of(path)
+        if parts is None or path != parts[0] or parts[1] not in order:
+            continue
+        if parameters[path].value == 0.0 and parameters[parts[1]].value == 0.0:
+            continue
+        yield at, order[parts[1]], parts
 
 
 def _width(*parts: FitParameter) -> float:
