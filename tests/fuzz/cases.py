@@ -11,7 +11,7 @@ from stiction.library import entries
 from .draw import EFFECTS, LAWS, Draw
 from .files import kinds, names_in
 from .meanings import arguments, mapped, moved
-from .surface import Target, targets
+from .surface import Target, names_read, targets
 
 Program = list[str]
 
@@ -90,10 +90,9 @@ def program(name: str, seed: str) -> Program:
         return file_lines(draw, name.removeprefix("file."))
     target = targets()[name]
     if target.owner is None:
-        lines = [called(draw, target)]
-        if "x" in lines[0].split("(")[-1].split(".")[0]:
-            lines.insert(0, f"x = {draw.motor()}")
-        return lines if target.kind != "class" else [f"x = {lines[0]}", "look(x)"]
+        line = called(draw, target)
+        lines = [line] if target.kind != "class" else [f"x = {line}", "look(x)"]
+        return [f"x = {draw.motor()}", *lines] if "x" in names_read(line) else lines
     lines = [f"x = {receiver(draw, target.owner)}"]
     stateful = target.owner.__name__ in STATEFUL
     if stateful:

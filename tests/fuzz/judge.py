@@ -27,7 +27,7 @@ import stiction as st
 
 from . import world
 from .files import DAMAGES
-from .surface import Target, targets
+from .surface import Target, names_read, targets
 from .world import Broken, same
 
 LONGEST = 10_000
@@ -133,8 +133,7 @@ def scratch() -> Path:
 def _step(line: str, names: dict[str, Any]) -> tuple[list[Find], str]:
     """Run one line."""
     tree = ast.parse(line)
-    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    if "x" in used and "x" not in names and not line.startswith("x = "):
+    if "x" in names_read(line) and "x" not in names:
         return [], "left out"
     called = callee(line, type(names.get("x")).__name__)
     kept = _states(names)
@@ -166,13 +165,16 @@ def _value(tree: ast.Module, line: str, names: dict[str, Any]) -> Any:
     target = None
     if isinstance(code, ast.Assign) and isinstance(code.targets[0], ast.Name):
         target, line = code.targets[0].id, ast.unparse(code.value)
-        names.pop(target, None)
     elif isinstance(code, ast.Assign):
         exec(compile(tree, "<case>", "exec"), names)
         return None
-    value = eval(compile(line, "<case>", "eval"), names)
-    if inspect.isgenerator(value):
-        value = list(islice(value, 100))
+    try:
+        value = eval(compile(line, "<case>", "eval"), names)
+        if inspect.isgenerator(value):
+            value = list(islice(value, 100))
+    except BaseException:
+        names.pop(target, None)  # what was to be replaced is not what later lines mean
+        raise
     if target:
         names[target] = value
     return value

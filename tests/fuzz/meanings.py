@@ -199,6 +199,12 @@ def _robot_table(draw: Draw) -> str:
     return f"{{'robot': {{'urdf': {draw.file('one.urdf')}, 'joints': [{joint}]}}}}"
 
 
+def _stated(draw: Draw) -> str:
+    """Parameters of a law or an effect, whichever it is."""
+    name = draw.pick(("viscous", "coulomb", "excess", "share"))
+    return "{}" if draw.chance(0.5) else f"{{{name!r}: Parameter({draw.signed()})}}"
+
+
 OF_TARGET: dict[str, Drawer] = {
     "Motion.position": lambda d: d.array(-6.0, -1.0, n=d.n + 1),
     "Plant.motion": lambda d: d.text(("rotary", "linear")),
@@ -214,6 +220,13 @@ OF_TARGET: dict[str, Drawer] = {
     "Plant.load.path": lambda d: d.file("plant.toml"),
     "Plant.from_bam.path": lambda d: d.file("params.json"),
     "bam.read_bam.path": lambda d: d.file("params.json"),
+    "plant.Friction.parameters": _stated,
+    "plant.Effect.name": lambda d: d.text(sorted(EFFECTS)),
+    "plant.Effect.parameters": _stated,
+    **dict.fromkeys(
+        tuple(f"library.Entry.{each}" for each in ("numbers", "source", "made", "floor")),
+        lambda d: "{}" if not d.odd() else d.text(("a",)),
+    ),
     "library.entry.name": lambda d: d.text([each.name for each in entries()]),
     "library.compare.entry": lambda d: "made('Entry')",
     "load.path": lambda d: d.file("session.toml"),

@@ -55,6 +55,12 @@ EXTENDED = "the package's class of the same name extends it"
 RECORDS = "a record without checks: what makes it is called"
 
 
+def names_read(line: str) -> set[str]:
+    """Names that a line needs before it runs."""
+    nodes = (node for node in ast.walk(ast.parse(line)) if isinstance(node, ast.Name))
+    return {node.id for node in nodes if isinstance(node.ctx, ast.Load)}
+
+
 @dataclass(frozen=True)
 class Target:
     """Something to call.
