@@ -6,6 +6,7 @@ from typing import Any, Final, Self, TypeVar, final, overload
 import numpy as np
 import numpy.typing as npt
 
+from .catalogue import LawRecord
 from .fixed import Fixed
 
 _Item = TypeVar("_Item")
@@ -66,11 +67,11 @@ class CancelToken:
 @final
 class FrictionModel:
     @overload
-    def __new__(cls, law: str, /, **keywords: float | str) -> FrictionModel: ...
+    def __new__(cls, law: str | LawRecord, /, **keywords: float | str) -> FrictionModel: ...
     @overload
     def __new__(
         cls,
-        law: str,
+        law: str | LawRecord,
         /,
         *,
         effects: dict[str, dict[str, float]] | None = None,

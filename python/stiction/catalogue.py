@@ -274,6 +274,11 @@ class EffectRecord:
         return self.falls or self.gains == ("quadratic",)
 
     @property
+    def by_motor(self) -> bool:
+        """Whether friction grows with the effort of the motor, for which no load is recorded."""
+        return self.family == "load" and not self.channels
+
+    @property
     def weighs(self) -> bool:
         """Whether it is a weight off the axis, which a body or links of a robot hold as well."""
         return "body.gravity_amplitude" in self.law_terms

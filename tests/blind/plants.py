@@ -32,7 +32,7 @@ AXIS4_SECONDS = (20.0, 30.0)
 CATALOGUE = {
     "asymmetry": "direction_asymmetry",
     "position_load": "gravity_unbalance",
-    "load_dependence": "load_dependent_friction",
+    "load_dependence": "effort_dependent_friction",
     "input_saturation": "drive_saturation",
     "input_dead_band": "drive_deadband",
     "torque_constant_error": "torque_constant_saturation",

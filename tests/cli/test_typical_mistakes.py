@@ -226,6 +226,7 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "an array for dt": (
         lambda: st.FrictionModel("lugre").simulate(np.ones(5), np.ones(5)), "dt is no number",
     ),
+    "a number for a law": (lambda: st.FrictionModel(3), "3 is no law; give a name"),
     "a name that is not there": (lambda: st.laws()["stribeck"], "there is no law 'stribeck'"),
     "speed for velocity": (
         lambda: st.FrictionModel("lugre").simulate(speed=np.ones(5), dt=1e-3),

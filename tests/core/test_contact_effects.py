@@ -308,12 +308,14 @@ def test_effects_by_speed_place_clock_and_path_are_their_equations():
         run_in={"coulomb": 0.2, "distance": 0.03},
         temperature_dependent_friction={"coulomb": 0.005, "viscous": 0.01, "reference": 25.0},
         load_dependent_friction={"drive": 0.3, "back_drive": 0.1, "velocity": 0.02},
+        effort_dependent_friction={"share": 0.2},
         cogging={"cosine": 0.02, "sine": 0.03, "order": 60.0},
         gravity_unbalance={"cosine": 0.01, "sine": 0.05},
         torque_bias={"bias": 0.015},
         viscous_quadratic={"quadratic": 0.4},
     )
-    found = slid(model, velocity, temperature=temperature, load=load, effort=0.0)
+    effort = 0.4 * np.sin(5.0 * t)
+    found = slid(model, velocity, temperature=temperature, load=load, effort=effort)
     forward = velocity / np.hypot(velocity, 0.02)
     warm, colder = -np.expm1(-t / 0.2), 25.0 - temperature
     level = (
@@ -327,7 +329,6 @@ def test_effects_by_speed_place_clock_and_path_are_their_equations():
         + 0.005 * colder
         + (0.2 * np.abs(load) - 0.1 * load * forward) / 0.35
     )
-    viscous = 1.0 + 0.2 * forward - 0.4 * warm + 0.01 * colder
     added = (
         0.02 * np.cos(60.0 * x)
         + 0.03 * np.sin(60.0 * x)
@@ -336,6 +337,9 @@ def test_effects_by_speed_place_clock_and_path_are_their_equations():
         + 0.015
         - 0.4 * velocity * np.abs(velocity)
     )
+    # All effort but friction and the load: what effects add as well.
+    level += 0.2 * np.abs(effort + added - load) / 0.35
+    viscous = 1.0 + 0.2 * forward - 0.4 * warm + 0.01 * colder
     wanted = 0.35 * level * s + 0.1 * viscous * velocity - added
     assert np.abs(found - wanted).max() < 1e-12
     assert model.state["position"] == pytest.approx(x[-1], rel=1e-12)

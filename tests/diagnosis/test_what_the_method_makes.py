@@ -46,6 +46,8 @@ def test_nothing_is_named_where_nothing_is_missing(tmp_path: Path, draw: int, se
         (2911, 2911566, "input_delay"),
         # And a dead zone that is one.
         (4711, 4711526, "drive_deadband"),
+        # A share of the effort, which a fit of the effort itself would make all of it.
+        (3023, 3023527, "effort_dependent_friction"),
     ],
 )
 def test_the_cause_alone_is_named(tmp_path: Path, draw: int, seed: int, name: str) -> None:

@@ -216,33 +216,37 @@ def test_a_law_without_c_keeps_its_feed_forward(monkeypatch):
 LEVEL = {
     "stribeck": (
         {"excess": 0.4, "velocity": 0.05, "exponent": 1.3},
-        lambda v, x, q, t, p: 0.4 * np.exp(-(np.abs(v / 0.05) ** 1.3)),
+        lambda v, x, q, t, p, u: 0.4 * np.exp(-(np.abs(v / 0.05) ** 1.3)),
     ),
     "direction_asymmetry": (
         {"coulomb": 0.1, "velocity": 0.02},
-        lambda v, x, q, t, p: 0.1 * v / np.hypot(v, 0.02),
+        lambda v, x, q, t, p, u: 0.1 * v / np.hypot(v, 0.02),
     ),
     "position_dependent_friction": (
         {"cosine": 0.1, "sine": -0.2, "order": 3.0, "cosine_2": 0.05, "order_2": 7.5},
-        lambda v, x, q, t, p: (
+        lambda v, x, q, t, p, u: (
             0.1 * np.cos(3.0 * x) - 0.2 * np.sin(3.0 * x) + 0.05 * np.cos(7.5 * x)
         ),
     ),
+    "effort_dependent_friction": (
+        {"share": 0.2},
+        lambda v, x, q, t, p, u: 0.2 * np.abs(u - q) / 0.3,
+    ),
     "load_dependent_friction": (
         {"drive": 0.3, "back_drive": 0.1, "velocity": 0.02},
-        lambda v, x, q, t, p: (0.2 * np.abs(q) - 0.1 * q * v / np.hypot(v, 0.02)) / 0.3,
+        lambda v, x, q, t, p, u: (0.2 * np.abs(q) - 0.1 * q * v / np.hypot(v, 0.02)) / 0.3,
     ),
     "temperature_dependent_friction": (
         {"coulomb": 0.005, "reference": 20.0},
-        lambda v, x, q, t, p: 0.005 * (20.0 - 30.0),
+        lambda v, x, q, t, p, u: 0.005 * (20.0 - 30.0),
     ),
     "run_in": (
         {"coulomb": 0.5, "distance": 0.2},
-        lambda v, x, q, t, p: -0.5 * (1.0 - np.exp(-p / 0.2)),
+        lambda v, x, q, t, p, u: -0.5 * (1.0 - np.exp(-p / 0.2)),
     ),
     "warm_up": (
         {"coulomb": 0.5, "time": 0.5},
-        lambda v, x, q, t, p: -0.5 * (1.0 - np.exp(-t / 0.5)),
+        lambda v, x, q, t, p, u: -0.5 * (1.0 - np.exp(-t / 0.5)),
     ),
 }
 ADDED = {
@@ -272,7 +276,7 @@ def test_levels_are_those_of_their_equations(name, tmp_path):
     compiled = Compiled(plant(DRY, {"name": name, **values}), tmp_path)
     velocity, dt, (effort, load) = wandering()
     place, time, path = (np.cumsum(each) for each in (velocity * dt, dt, np.abs(velocity) * dt))
-    level = np.maximum(1.0 + share(velocity, place, load, time, path), 0.0) * 0.3
+    level = np.maximum(1.0 + share(velocity, place, load, time, path, effort), 0.0) * 0.3
     slides = np.sign(velocity) * level + 0.1 * velocity
     by_hand = np.where(velocity == 0.0, np.clip(effort, -level, level), slides)
     found = compiled.step(velocity, dt, effort, load, 30.0)

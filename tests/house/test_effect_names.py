@@ -14,7 +14,7 @@ TABLES: dict[str, tuple[int, str]] = {
     "bench/ordinary/hidden.py": (11, "what each hides in a machine that knows no catalogue"),
     "compare/document.py": (3, "properties of laws that are called as effects are"),
     "compare/properties/sliding.py": (2, "properties of laws that are called as effects are"),
-    "diagnosis/findings/presentation.py": (29, "the entry of each effect"),
+    "diagnosis/findings/presentation.py": (30, "the entry of each effect"),
     "export/mjcf.py": (4, "the effects that simulators have elements for"),
     "ode.py": (3, "the formula of each"),
     "paper/local.py": (1, "the effect that an experiment is simulated with"),

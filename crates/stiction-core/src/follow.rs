@@ -43,7 +43,8 @@ pub struct Whereabouts<'a, S: Scalar> {
 impl<S: Scalar> Whereabouts<'_, S> {
     /// Where the plant is.
     pub fn situation(&self) -> Situation<S> {
-        self.machine.at_contact(self.at, self.load)
+        let (effort, ..) = self.machine.efforts(self.at, self.input, self.load);
+        self.machine.at_contact(self.at, effort, self.load)
     }
 
     /// What the drive is commanded.
@@ -206,7 +207,7 @@ where
         let earlier = samples.start.checked_sub(1).filter(|_| located);
         let earlier = earlier.and_then(|sample| track.stop(sample));
         let (velocity, mut stop) = track.slope(&dt, located, earlier);
-        let mut at = machine.at_contact(&run.situation(), S::constant(0.0));
+        let mut at = machine.at_contact(&run.situation(), S::constant(0.0), S::constant(0.0));
         let some = !samples.is_empty();
         // What readings show as it is depends on no parameter: of these only the values change.
         let mut step =

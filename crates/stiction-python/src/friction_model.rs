@@ -24,8 +24,8 @@ use crate::state::{from_dict, keywords, to_dict};
 ///
 /// Parameters
 /// ----------
-/// law : str
-///     A name of the catalogue, see ``stiction.laws()``.
+/// law : str or LawRecord
+///     A name of the catalogue, see ``stiction.laws()``, or an entry of it.
 /// effects : dict of str to dict of str to float, optional
 ///     Effects by name with their parameters, as ``Motor`` takes them: those that act on the friction
 ///     level, add an effort or let the contact relax (``EffectRecord.at_contact`` of
@@ -113,6 +113,23 @@ pub fn fixed<'py>(dict: Bound<'py, PyDict>, remedy: &str) -> PyResult<Bound<'py,
     FIXED.import(dict.py(), "stiction.fixed", "Fixed")?.call1((dict, remedy))
 }
 
+/// The name of a law, by itself or of its record in the catalogue.
+fn name_of(law: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(Text(name)) = law.extract() {
+        return Ok(name);
+    }
+    match law.getattr("name").and_then(|name| name.extract()) {
+        Ok(Text(name)) => Ok(name),
+        Err(_) => Err(input_error(
+            law.py(),
+            format!(
+                "FrictionModel: {} is no law; give a name of stiction.laws(), such as 'lugre'",
+                law.repr()?
+            ),
+        )),
+    }
+}
+
 /// A velocity of one contact: many at once are told where they belong.
 #[inline]
 fn one(value: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -160,11 +177,11 @@ impl FrictionModel {
     #[pyo3(signature = (law, /, *, effects=None, **keywords))]
     fn new(
         py: Python<'_>,
-        law: Text,
+        law: &Bound<'_, PyAny>,
         effects: Option<&Bound<'_, PyAny>>,
         keywords: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let Text(law) = law;
+        let law = name_of(law)?;
         let (numbers, words) = self::keywords(&law, keywords)?;
         let spec = LawSpec::new(&law, &numbers, &words).or_input_error(py)?;
         let effects = effects.map(effects_of).transpose()?.unwrap_or_default();

@@ -28,7 +28,7 @@ from .forms import (
 )
 from .minimise import Solution, launch, or_from, with_interruption
 from .pushes import Watch
-from .rows import Nuisances, Rows
+from .rows import Nuisances, Rows, count_by
 from .start import complete, free_paths, with_light_friction, yielding_starts
 
 __all__ = [
@@ -205,6 +205,7 @@ def fit_from_data(
     """
     forms = [each.form for each in rows]
     starts = complete(plant, forms)
+    count_by(starts[0], forms)
     begun = [within(start) for start in starts]
     found = launch(begun, free_paths(begun[0]), rows, most=most, hopeless=hopeless)
     if found.interrupted or found.power > hopeless:

@@ -26,6 +26,7 @@ __all__ = [
     "Rows",
     "Start",
     "add_starts",
+    "count_by",
     "numbers",
     "require_motion",
     "rows_of",
@@ -127,9 +128,25 @@ class Rows:
         return self.form.for_plant(plant).with_leader(nuisances.leader)
 
     def residual(self, plant: Plant, nuisances: Nuisances) -> FloatArray:
-        """Measured minus needed effort of every row; shape (n,)."""
+        """Measured minus needed effort of every row, times ``scale``; shape (n,)."""
         left = self.form_for(plant, nuisances).residual(plant, nuisances.start(self.index))
-        return left + nuisances.timing * self.late
+        found: FloatArray = self.scale(plant) * (left + nuisances.timing * self.late)
+        return found
+
+    def scale(self, plant: Plant) -> float:
+        """What an effort that is left counts for: 1, but where friction grows with the effort.
+
+        Where a machine drives all the time, (1 − c)·u = J·x'' + F holds for any share c that
+        friction has of the effort u, with J and F scaled along; measured effort that is left is
+        least where all is friction and nothing is explained. The effort is no dependent variable
+        there. So the acceleration is: what is left over J, times an inertia that stays
+        (``counted`` of the form).
+        """
+        counted = self.form.counted
+        if counted is None or not plant.friction_by_motor or self.form.simulated:
+            return 1.0
+        own = self.form.own(plant).inertia
+        return counted / own if own > 0.0 else 1.0
 
     def jacobian(self, plant: Plant, paths: Sequence[str], nuisances: Nuisances) -> FloatArray:
         """Derivatives of the residual by parameters and start quantities; shape (n, paths).
@@ -141,9 +158,21 @@ class Rows:
         form = self.form_for(plant, nuisances)
         found = form.jacobian(plant, every, nuisances.start(self.index))
         columns = found[:, : len(paths)]
+        scale = self.scale(plant)
+        if scale != 1.0:
+            found *= scale
+            if "body.inertia" in paths:
+                left = self.residual(plant, nuisances) / form.own(plant).inertia
+                columns[:, list(paths).index("body.inertia")] -= left
         for column, (_, place, factor) in enumerate(follows, len(paths)):
             columns[:, place] += factor * found[:, column]
         return columns
+
+
+def count_by(plant: Plant, forms: Sequence[WeakForm]) -> None:
+    """Counts accelerations by the inertia of a plant, where that matters (see ``Rows.scale``)."""
+    for form in forms:
+        form.counted = None if form.prescribed else form.own(plant).inertia
 
 
 def warm(form: WeakForm, recording: Recording) -> Mask:

@@ -53,7 +53,7 @@ def slope_block(
     timing = len(paths)
     block = np.empty((len(found) + 1, int(np.count_nonzero(rows.mask))))
     np.compress(rows.mask, found[:timing], axis=1, out=block[:timing])
-    np.compress(rows.mask, rows.late, out=block[timing])
+    np.compress(rows.mask, rows.scale(plant) * rows.late, out=block[timing])
     np.compress(rows.mask, found[timing:], axis=1, out=block[timing + 1 :])
     block *= rows.weight
     return [*range(timing + 1), *(timing + 1 + j for j, _ in own)], finite(block)

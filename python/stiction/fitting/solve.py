@@ -45,7 +45,7 @@ from .minimise import (
 from .pushes import Watch, push_checks
 from .recording_starts import fit_starts, fit_turns
 from .result import FitParameter, FitResult
-from .rows import Nuisances, Rows, add_starts, require_motion, rows_of
+from .rows import Nuisances, Rows, add_starts, count_by, require_motion, rows_of
 from .sign import LEFT_WHERE_WRONG, sign_error
 from .slopes import slopes
 from .start import complete, free_paths
@@ -214,6 +214,7 @@ def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> 
     pushed = [f"{name}: {c.what}; {c.means}." for name, c in push_checks(seen.pushes, names)]
 
     def told(found: Solution) -> FitResult:
+        count_by(found.plant, seen.forms)
         return evaluate(
             found,
             train,

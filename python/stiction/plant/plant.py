@@ -467,6 +467,15 @@ class Plant(metaclass=FromFile):
         return self._motor(inertia, integrator)
 
     @property
+    def friction_by_motor(self) -> bool:
+        """Whether friction grows with the effort of the motor, by an effect or by the law."""
+        grows = [record for record in effects() if record.by_motor]
+        terms = {name for record in grows for name in record.law_terms}
+        stated = {name for name, p in self.friction.parameters.items() if p.value or not p.fixed}
+        named = {record.name for record in grows}
+        return not terms.isdisjoint(stated) or any(e.name in named for e in self.effects)
+
+    @property
     def shifts_mass(self) -> bool:
         """Whether an effect puts the centre of mass elsewhere than where the sensor reads it."""
         shifting = {record.name for record in effects() if record.shifts_mass}

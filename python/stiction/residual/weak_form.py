@@ -108,6 +108,9 @@ class WeakForm:
 
     simulated: ClassVar[bool] = False
     """Whether the plant moves by itself, and is not led along the measured motion."""
+    counted: float | None = None
+    """Inertia by which accelerations are counted where friction grows with the effort itself (see
+    ``Rows.scale``); None until a fit has one."""
     stiffness: float | None = None
     """Effort per position where the residual is an error of position, counted as an effort."""
 

@@ -32,9 +32,9 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// Whether it depends on what happened before.
     const REMEMBERS: bool = false;
 
-    /// Whether its level goes by speed or load, and not by place, path, time and temperature alone.
+    /// Whether its level goes by speed or efforts, and not by place, path, time and temperature alone.
     const ASKS_SPEED: bool = true;
-    /// Whether its level changes while nothing moves: with time or load.
+    /// Whether its level changes while nothing moves: with time or efforts.
     const CHANGES_IN_TIME: bool = true;
 
     /// The effect with these values.
@@ -204,6 +204,7 @@ effects! {
     drive_deadband => DriveDeadband,
     drive_saturation => DriveSaturation,
     dwell_strengthening => DwellStrengthening,
+    effort_dependent_friction => EffortDependentFriction,
     encoder_eccentricity => EncoderEccentricity,
     frictional_lag => FrictionalLag,
     goal_rate_limit => GoalRateLimit,

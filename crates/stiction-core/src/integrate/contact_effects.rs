@@ -73,7 +73,7 @@ impl<S: Scalar> ContactEffects<S> {
         run.velocity = velocity;
         run.temperature = given.temperature;
         machine.effects.remember(&Passage { displacement, friction: run.friction, span });
-        let at = machine.at_contact(&run.situation(), given.load);
+        let at = machine.at_contact(&run.situation(), given.effort, given.load);
         let added = machine.surroundings(&at);
         let own = machine.channels(&at, given.effort + added, given.load);
         let channels = Channels {

@@ -294,13 +294,13 @@ impl<S: Scalar> Machine<S> {
         self.drive.direct(input) + load
     }
 
-    /// What else acts on this unchanged machine and its contact under a load after a step that displaces the
-    /// body so far.
+    /// What else acts on this unchanged machine and its contact after a step that displaces the body so far,
+    /// beside the [effort of the drive and a load](Self::driven_directly), and that load.
     #[inline(always)]
     pub fn beside(
         &self,
         run: &Run<S>,
-        load: impl FnOnce() -> S,
+        acting: impl FnOnce() -> (S, S),
         displacement: S,
         velocity: S,
         span: S,
@@ -310,22 +310,28 @@ impl<S: Scalar> Machine<S> {
         if !self.effects.changes_levels() {
             return Acting::plain(ambient);
         }
-        Acting { ambient, levels: self.effects.levels(&self.at_contact(&at, load())) }
+        let (effort, load) = acting();
+        let at = self.at_contact(&at, effort + ambient, load);
+        Acting { ambient, levels: self.effects.levels(&at) }
     }
 
-    /// Levels of the contact of this unchanged machine under a load where a run is; `arrived` is what was said
-    /// of the place before the velocity was known.
+    /// Levels of the contact of this unchanged machine where a run is, under the effort of the drive and a load,
+    /// and that load; `arrived` is what was said of the place before the velocity was known.
     #[inline(always)]
     pub fn levels_of(
         &self,
         run: &Run<S>,
-        load: impl FnOnce() -> S,
+        acting: impl FnOnce() -> (S, S),
         arrived: Option<&Acting<S>>,
     ) -> (S, S) {
         match arrived {
             _ if !self.effects.changes_levels() => Acting::plain(run.ambient).levels,
             Some(arrived) if !self.effects.asks_speed() => arrived.levels,
-            _ => self.effects.levels(&self.at_contact(&run.situation(), load())),
+            _ => {
+                let (effort, load) = acting();
+                let at = self.at_contact(&run.situation(), effort + run.ambient, load);
+                self.effects.levels(&at)
+            }
         }
     }
 
@@ -440,11 +446,12 @@ impl<S: Scalar> Machine<S> {
         (driven + load + ambient, driven, ambient)
     }
 
-    /// A situation with what it lacks of the contact: its load and its friction.
+    /// A situation with what it lacks of the contact under all effort but friction, of which the load is a
+    /// part.
     #[inline]
-    pub fn at_contact(&self, at: &Situation<S>, load: S) -> Situation<S> {
-        let load = at.carried(load + self.body.gravity(at.position));
-        Situation { load, sliding: self.sliding, ..*at }
+    pub fn at_contact(&self, at: &Situation<S>, effort: S, load: S) -> Situation<S> {
+        let load = load + self.body.gravity(at.position);
+        Situation { load: at.carried(load), motor: effort - load, sliding: self.sliding, ..*at }
     }
 
     /// Whether efforts are those of a plain drive and of a weight, and no effect lies between them
@@ -482,7 +489,7 @@ impl<S: Scalar> Machine<S> {
     #[inline]
     pub fn channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
         let (level, viscous_level) = if self.effects.changes_levels() {
-            self.effects.levels(&self.at_contact(at, load))
+            self.effects.levels(&self.at_contact(at, effort, load))
         } else {
             self.effects.levels(at)
         };

@@ -227,7 +227,9 @@ pub fn finer<S: Scalar, L: FrictionLaw<S>>(
         return 1.0;
     }
     let (level, viscous) = if machine.effects.changes_levels() {
-        machine.effects.levels(&machine.at_contact(&run.situation(), load))
+        let at = run.situation();
+        let effort = machine.driven(input, &at) + load + run.ambient;
+        machine.effects.levels(&machine.at_contact(&at, effort, load))
     } else {
         (S::constant(1.0), S::constant(1.0))
     };

@@ -55,6 +55,7 @@ impl<S: Scalar> Task for Reaching<'_, S> {
             if effects.adds_efforts() { effects.effort_within(at) } else { S::constant(0.0) };
         *ambient = gravity + added;
         channels.effort = *driven + *load + *ambient;
+        at.motor = channels.effort - (*load + gravity);
         channels.load = at.load;
         (channels.level, channels.viscous_level) = effects.levels_within(at);
         channels.temperature = at.temperature;

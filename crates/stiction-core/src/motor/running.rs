@@ -442,7 +442,8 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         velocity: S,
         span: S,
     ) -> Acting<S> {
-        self.machine.beside(run, || self.load(sample), displacement, velocity, span)
+        let acting = || (self.at(sample), self.load(sample));
+        self.machine.beside(run, acting, displacement, velocity, span)
     }
 
     #[inline(always)]
@@ -450,7 +451,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         if BARE {
             return (S::constant(1.0), S::constant(1.0));
         }
-        self.machine.levels_of(run, || self.load(sample), arrived)
+        self.machine.levels_of(run, || (self.at(sample), self.load(sample)), arrived)
     }
 
     #[inline(always)]

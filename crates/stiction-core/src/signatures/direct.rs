@@ -116,6 +116,7 @@ fn sampled(
             path: at.path.re(),
             moved: at.moved.re(),
             load: at.load.re(),
+            motor: at.motor.re(),
             sliding: at.sliding.re(),
             transmitted: at.transmitted,
             temperature: at.temperature,

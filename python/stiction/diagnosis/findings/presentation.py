@@ -127,6 +127,9 @@ PRESENTATIONS: Final[dict[str, Presentation]] = {
             "stick, or for a contact that ages",
         ),
     ),
+    "effort_dependent_friction": Presentation(
+        title="effort-dependent friction", over="effort along the motion"
+    ),
     "encoder_eccentricity": Presentation(
         title="eccentric encoder",
         over=Wave(

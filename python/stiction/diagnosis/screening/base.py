@@ -13,6 +13,7 @@ from ...fitting.first_pass import WORTH_WIDER, Along, FirstPass, first_pass, rem
 from ...fitting.forms import Through, astray, wider_of, windows_of
 from ...fitting.minimise import MOST_EVALUATIONS
 from ...fitting.pushes import Watch
+from ...fitting.rows import count_by
 from ...fitting.sign import sign_error
 from ...fitting.solve import fit_remainder, second_pass
 from ...plant import Plant
@@ -97,6 +98,7 @@ def _second(plant: Plant, first: FirstPass[Evidence]) -> tuple[Evidence, Model]:
     """The base after its second pass, as `fit_baseline` returns it."""
     evidence = first.seen
     solution = second_pass(first.solution, evidence.train, most=MOST_EVALUATIONS)
+    count_by(solution.plant, evidence.forms)
     evidence.weigh()
     narrow = not (evidence.simulated or any(form.widened for form in evidence.forms))
     # Slopes of a first pass are those of other weights.

@@ -180,6 +180,9 @@ def _candidates(
         if not reason and missing:
             reason = f"not testable: no channel {missing[0]} was recorded"
             found.blind.append(record)
+        if not reason and record.by_motor and "load" in channels:
+            # The motor bears the load first of all: beside that both would be one.
+            reason = "not tried: the load is known, and friction that grows with it is tried"
         if reason:
             found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
         else:
@@ -199,7 +202,7 @@ def _refused(evidence: Evidence, plant: Plant, record: EffectRecord) -> str:
         return reason
     if evidence.loop and SWINGS in record.hooks:
         return "not testable: what swings between samples shows in no loop that is simulated"
-    if plant.prescribed_motion and not AT_THE_DRIVE.isdisjoint(record.hooks):
+    if plant.prescribed_motion and (record.by_motor or not AT_THE_DRIVE.isdisjoint(record.hooks)):
         return "there is no drive where the motion is prescribed"
     return ""
 

@@ -48,6 +48,12 @@ STICTION_REAL stiction_step(stiction_state *s, STICTION_REAL velocity, STICTION_
 #each remember
     EFFECT_remember(s, m);
 #end
+#ifdef EFFORTS
+#each effort
+    added += EFFECT_effort(s, m);
+#end
+    it.effort += added;
+#endif
 #ifdef LEVELS
     it.level = R(1);
     it.viscous_level = R(1);
@@ -59,12 +65,6 @@ STICTION_REAL stiction_step(stiction_state *s, STICTION_REAL velocity, STICTION_
 #end
     it.level = it.level < R(0) ? R(0) : it.level;
     it.viscous_level = it.viscous_level < R(0) ? R(0) : it.viscous_level;
-#endif
-#ifdef EFFORTS
-#each effort
-    added += EFFECT_effort(s, m);
-#end
-    it.effort += added;
 #endif
 #each creep
     it.displacement -= EFFECT_creep(s, m);

@@ -18,6 +18,8 @@ pub struct Situation<S> {
     /// Effort from the machine's load, external and gravity, positive along +x; what the gear transmits
     /// where that is known.
     pub load: S,
+    /// Effort on the body, positive along +x, but friction and the load: that of the motor first of all.
+    pub motor: S,
     /// Friction of slow sliding of the law, at level 1.
     pub sliding: S,
     /// Effort that the gear transmits, positive along +x, where that is known and is more than the
@@ -42,6 +44,7 @@ impl<S: Scalar> Situation<S> {
             path: zero,
             moved: zero,
             load: zero,
+            motor: zero,
             sliding: zero,
             transmitted: None,
             temperature: None,
