@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::friction::{FrictionLaw, LawState};
-use crate::integrate::{Account, Adaptive, LONGEST_PHASE, Machine, Run, parts};
+use crate::integrate::{Account, Adaptive, Longest, Machine, Run, parts};
 use crate::interrupt;
 use crate::motor::{Column, Motor, Running, Surroundings};
 use crate::work::{self, Meter};
@@ -190,7 +190,7 @@ impl Running<f64> {
 
 /// A step of the fast integrator that needs no division.
 fn natural<L: FrictionLaw<f64>>(machine: &Machine<f64>, law: &L) -> f64 {
-    let step = 1.0 / parts(machine, law, 1.0, LONGEST_PHASE);
+    let step = 1.0 / parts(machine, law, 1.0, Longest::USUAL);
     let fall = FALL * machine.body.inertia / law.steepest_fall();
     step.min(LONGEST_NATURAL).min(if fall.is_finite() { fall } else { f64::INFINITY })
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::friction::FrictionLaw;
-use crate::integrate::LONGEST_PHASE;
+use crate::integrate::{LONGEST_PHASE, Longest};
 use crate::interrupt;
 use crate::motor::{MotorSpec, PerSample, Running};
 use crate::scalar::{COLUMNS, Dual, Scalar};
@@ -100,7 +100,7 @@ impl<S: Scalar> Running<S> {
         let mut left = all;
         let mut reached = 0;
         let phase = self.phase_of_window(dt.greatest(), length);
-        let longest_phase = self.longest_phase.max(phase);
+        let longest = Longest::close(self.longest.phase.max(phase));
         for window in 0..windows.number(motion.samples()) {
             interrupt::check()?;
             let start = window * windows.stride.max(1);
@@ -109,7 +109,7 @@ impl<S: Scalar> Running<S> {
             let end = start + length;
             let track = Track::new(positions, actual, start);
             let mut shot = self.clone();
-            shot.longest_phase = longest_phase;
+            shot.longest = longest;
             shot.most_parts = shot.most_parts.min(MOST_SHOT_PARTS);
             shot.run.position = track.position();
             shot.run.velocity = track.velocity(&dt);
@@ -157,7 +157,7 @@ impl Running<f64> {
         let actual: Option<&dyn Fn(f64) -> f64> =
             if sensor.misreads() { Some(&actual) } else { None };
         let mut meter = Meter::new(work::allowed(motion.samples()));
-        self.longest_phase = self.longest_phase.max(self.phase_of_samples(dt.greatest()));
+        self.longest.phase = self.longest.phase.max(self.phase_of_samples(dt.greatest()));
         for k in 0..motion.samples() {
             let track = Track::new(positions, actual, k);
             let behind = track.position() - self.run.position;

@@ -57,9 +57,39 @@ pub enum Integrator {
 /// ω·h above which the fast integrator divides a sample: the phase error of its ring is then
 /// (ω·h)²/24 ≤ 2e-4 of the phase.
 pub const LONGEST_PHASE: f64 = 0.065;
-/// (C/J)·h above which a sample is divided; where rings are followed coarsely, twice their ω·h, which
-/// is that of a ring that is damped critically.
+/// (C/J)·h above which a sample is divided: a speed then dies out by (C/J·h)²/12 = 5e-3 too fast.
 const LONGEST_DAMPING: f64 = 0.25;
+/// The same where a simulation is held against readings: 2e-4, as of a ring.
+const CLOSE_DAMPING: f64 = 0.05;
+
+/// What may happen within a step: beyond it a sample is divided.
+#[derive(Debug, Clone, Copy)]
+pub struct Longest {
+    /// ω·h of what swings.
+    pub phase: f64,
+    /// (C/J)·h of what is damped.
+    damping: f64,
+}
+
+impl Longest {
+    /// As motions are simulated where nobody says otherwise.
+    pub const USUAL: Self = Self { phase: LONGEST_PHASE, damping: LONGEST_DAMPING };
+
+    /// Where a simulation is held against readings, and rings followed up to that phase.
+    pub fn close(phase: f64) -> Self {
+        Self { phase, damping: CLOSE_DAMPING }
+    }
+
+    /// (C/J)·h; where rings are followed coarsely twice their ω·h, which is that of a ring that is damped
+    /// critically.
+    fn damped(self) -> f64 {
+        if self.phase > LONGEST_PHASE {
+            self.damping.max(2.0 * self.phase).max(LONGEST_DAMPING)
+        } else {
+            self.damping
+        }
+    }
+}
 /// Where friction falls with speed a sample is divided further, to follow the fall, but not
 /// without end: the steeper it is, the shorter it lasts.
 const MOST_PARTS_FOR_A_FALL: f64 = 16.0;
@@ -114,13 +144,13 @@ impl Integrator {
     }
 }
 
-/// Number of equal parts that a sample of this duration is divided into, so that ω·h stays below
-/// `longest`; above [`MOST_PARTS`] the sample is too long for the machine.
+/// Number of equal parts that a sample of this duration is divided into, so that a step holds no more
+/// than `longest`; above [`MOST_PARTS`] the sample is too long for the machine.
 pub fn parts<S: Scalar, L: FrictionLaw<S>>(
     machine: &Machine<S>,
     law: &L,
     dt: f64,
-    longest: f64,
+    longest: Longest,
 ) -> f64 {
     let (smooth, falling) = asked_for(machine, law, dt, longest);
     smooth.max(falling).ceil().max(1.0)
@@ -132,12 +162,12 @@ fn asked_for<S: Scalar, L: FrictionLaw<S>>(
     machine: &Machine<S>,
     law: &L,
     dt: f64,
-    longest: f64,
+    longest: Longest,
 ) -> (f64, f64) {
     let lightest = machine.inertia.re();
-    let phase = machine.phase(law.greatest_stiffness(), dt) / longest;
+    let phase = machine.phase(law.greatest_stiffness(), dt) / longest.phase;
     let damping = dt * (law.greatest_damping() + machine.servo().1) / lightest;
-    let calming = damping / LONGEST_DAMPING.max(2.0 * longest);
+    let calming = damping / longest.damped();
     let falling = dt * law.steepest_fall() / lightest / LONGEST_DAMPING;
     (phase.max(calming), falling.min(MOST_PARTS_FOR_A_FALL))
 }
@@ -153,7 +183,7 @@ pub struct Division {
 }
 
 impl Division {
-    /// That of a sample of this duration, so that ω·h stays below `longest`.
+    /// That of a sample of this duration, so that a step holds no more than `longest`.
     ///
     /// What falls with speed at times alone, a contact that has broken away, is followed at those times: while
     /// it holds, a fall that is not there asks for nothing.
@@ -161,7 +191,7 @@ impl Division {
         machine: &Machine<S>,
         law: &L,
         dt: f64,
-        longest: f64,
+        longest: Longest,
         integrator: Integrator,
     ) -> Self {
         if !L::FALLS_AT_TIMES || integrator == Integrator::Reference {
@@ -376,7 +406,7 @@ mod tests {
     ) -> Vec<Run<f64>> {
         let (mut state, mut run) = (law.initial(), machine.start(0.0, 0.0));
         let dt = 1e-4;
-        let parts = parts(machine, law, dt, LONGEST_PHASE) as u32;
+        let parts = parts(machine, law, dt, Longest::USUAL) as u32;
         (0..5000)
             .map(|_| {
                 sample::<_, _, false>(

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::follow::arriving;
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
-    Acting, Division, Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, Steps,
+    Acting, Division, Efforts, Integrator, Longest, MOST_PARTS, Machine, Plain, Run, Steps,
     Stillness, finer, parts, sample,
 };
 use crate::model::CHUNK;
@@ -37,8 +37,8 @@ pub struct Running<S: Scalar> {
     pub way: Option<Way<S>>,
     /// Integrator.
     pub integrator: Integrator,
-    /// ω·h above which it divides a sample.
-    pub longest_phase: f64,
+    /// What its steps hold at most.
+    pub longest: Longest,
     /// Parts of a sample above which it refuses to go on.
     pub most_parts: f64,
     /// Within what a step needs no watch.
@@ -65,7 +65,7 @@ impl<S: Scalar> Running<S> {
         let way = any.then(|| Way::new(delay, slowness, lag));
         let integrator = spec.integrator;
         let plain: Vec<f64> = values.iter().map(|value| value.re()).collect();
-        let a_second = with_law!(&law, |law| parts(&machine, law, 1.0, LONGEST_PHASE));
+        let a_second = with_law!(&law, |law| parts(&machine, law, 1.0, Longest::USUAL));
         // How finely the reference divides hangs on its state.
         let ordinary = integrator == Integrator::Fast && ordinary_motor(spec, &plain);
         let range = Range::new(ordinary, a_second);
@@ -76,7 +76,7 @@ impl<S: Scalar> Running<S> {
             run,
             way,
             integrator,
-            longest_phase: LONGEST_PHASE,
+            longest: Longest::USUAL,
             most_parts: MOST_PARTS,
             range,
             allowance: None,
@@ -133,7 +133,7 @@ impl<S: Scalar> Running<S> {
 
     /// How a sample of this duration is divided, but for what effects make of it.
     pub fn division(&self, dt: f64) -> Division {
-        let (machine, longest) = (&self.machine, self.longest_phase);
+        let (machine, longest) = (&self.machine, self.longest);
         with_law!(&self.law, |law| Division::of(machine, law, dt, longest, self.integrator))
     }
 
@@ -154,7 +154,7 @@ impl<S: Scalar> Running<S> {
     ) -> Result<()> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let Division { steps, pieces } =
-                Division::of(&self.machine, law, dt, self.longest_phase, self.integrator);
+                Division::of(&self.machine, law, dt, self.longest, self.integrator);
             let finer = finer(
                 &self.machine,
                 law,
@@ -275,9 +275,10 @@ impl<S: Scalar> Running<S> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
             let strains = !BARE && self.machine.effects.strains();
+            let remembers = !BARE && self.machine.effects.remembers();
             let mut known = f64::NAN;
             let (mut plainly, mut divided, mut pieces) = (1.0, 1, 1);
-            let (longest, integrator) = (self.longest_phase, self.integrator);
+            let (longest, integrator) = (self.longest, self.integrator);
             let mut room = 0;
             let mut ahead = Ahead::default();
             let mut index = 0;
@@ -304,6 +305,7 @@ impl<S: Scalar> Running<S> {
                     divided = whole_parts(plainly * finer, self.most_parts, dt_now)?;
                 }
                 let mut passed = 0;
+                let before = self.run;
                 if glides && (!BARE || self.machine.glides(&self.run)) {
                     let steps = Steps::of(dt_now, divided, pieces);
                     let finely = steps.goes_in_pieces(law, state);
@@ -341,7 +343,8 @@ impl<S: Scalar> Running<S> {
                     // Not to the end, which would be looked for anew after every event.
                     let end =
                         if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
-                    let end = dt.same_until(index, end);
+                    // What effects remember changes after each sample.
+                    let end = if remembers { index + 1 } else { dt.same_until(index, end) };
                     let most = if S::CARRIES { MOST_AT_ONCE / 8 } else { MOST_AT_ONCE };
                     let end = end.min(index + 1 + most / parts as usize);
                     let begun = index;
@@ -366,6 +369,9 @@ impl<S: Scalar> Running<S> {
                     }
                     let steps = (index - begun) as u64 * u64::from(parts);
                     meter.take(steps * work::in_a_row::<S>() * law.glide_cost())?;
+                    if remembers && index > begun {
+                        self.machine.remember(&before, &mut self.run);
+                    }
                     // Also what needs other steps from here on.
                     if index == end || (strains && index > begun && passed == 0) {
                         continue;
@@ -384,7 +390,6 @@ impl<S: Scalar> Running<S> {
                     state.make_room(room as usize + CHUNK / 4);
                 }
                 room -= left;
-                let before = self.run;
                 let arrived = arriving(&mut way, inputs[index], dt_now);
                 sample::<_, _, BARE>(
                     &self.machine,

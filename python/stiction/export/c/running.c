@@ -143,7 +143,7 @@ static long finer(const stiction_machine *a, const acting *by, real h)
     motion it = {0};
     motion *const m = &it;
     it.velocity = a->velocity;
-    reach(s, m, R(0), by);
+    reach(s, m, driven(a, s, by->input, a->velocity) + by->load + a->ambient, by);
 #ifdef LEVELS
     level = m->level;
     viscous_level = m->viscous_level;
