@@ -6,12 +6,12 @@ use super::elements::reachable::reachable;
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::Result;
+use crate::batch::lanes::{self, Abreast};
 use crate::integrate::{Efforts, Glide, Seen, glide_on};
-use crate::lanes::{self, Abreast};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, logarithmic_mean, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, logarithmic_mean, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`Dahl`].

@@ -2,11 +2,11 @@
 
 use super::maxwell_slip::{MaxwellSlip, MaxwellSlipState, MaxwellSlipTrial};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
-use crate::error::Result;
 use crate::integrate::{Efforts, Glide, Seen};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::Scalar;
 use crate::parameters;
-use crate::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`DahlWithMemory`].

@@ -6,12 +6,12 @@ use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, 
 use super::elements::lag::{follow, follow_within};
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
-use crate::error::Result;
+use crate::batch::lanes::{self, Abreast};
 use crate::integrate::{Efforts, Glide, Seen};
-use crate::lanes::{self, Abreast};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`LuGre`].

@@ -7,11 +7,11 @@ use super::elements::yield_curve::YieldCurve;
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::Result;
 use crate::integrate::{Efforts, Glide, Seen};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::Scalar;
 use crate::parameters;
-use crate::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 /// What a plain step on a curve that is not exponential takes, see [`FrictionLaw::glide_cost`].
 const OF_ANY_CURVE: u64 = 2;

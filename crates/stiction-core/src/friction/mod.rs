@@ -8,10 +8,11 @@ pub mod elements;
 pub use elements::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
 pub use elements::entry::{Entry, EntryReader};
 pub use elements::law::{FrictionLaw, INTERNAL, LawState};
+pub use elements::spec::LawSpec;
 
-use crate::error::{Error, Result};
-use crate::parameter::{OptionSpec, ParameterSpec};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
+use crate::support::error::{Error, Result};
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 /// A law as the catalogue knows it.
 #[derive(Debug, Clone, Copy)]
@@ -115,7 +116,7 @@ macro_rules! laws {
             }
 
             /// Takes motors with contacts of one kind that go abreast through their samples.
-            pub fn take_abreast(job: &$crate::lanes::Job<'_>, motors: Vec<$crate::lanes::Motor<'_>>) {
+            pub fn take_abreast(job: &$crate::batch::lanes::Job<'_>, motors: Vec<$crate::batch::lanes::Motor<'_>>) {
                 let Some(first) = motors.first() else { return };
                 match &first.running.law {
                     $(Self::$law(law) => {
@@ -123,16 +124,16 @@ macro_rules! laws {
                         let members = motors.into_iter().filter_map(|motor| {
                             let (number, own) = (motor.number, motor.own);
                             let pieces = motor.running.division(job.dt).pieces;
-                            let $crate::motor::Running { machine, law, state, run, .. } = motor.running;
+                            let $crate::simulate::motor::Running { machine, law, state, run, .. } = motor.running;
                             match (&*law, state) {
                                 (Self::$law(law), AnyState::$law(state)) => {
-                                    Some($crate::lanes::Member { number, machine, law, state, run, pieces, own })
+                                    Some($crate::batch::lanes::Member { number, machine, law, state, run, pieces, own })
                                 }
                                 #[allow(unreachable_patterns)] // a catalogue of one law has no other
                                 _ => unreachable!("motors of an ensemble have one law"),
                             }
                         });
-                        walk(&mut $crate::lanes::Team { members: members.collect(), job });
+                        walk(&mut $crate::batch::lanes::Team { members: members.collect(), job });
                     })*
                 }
             }

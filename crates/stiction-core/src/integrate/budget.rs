@@ -7,7 +7,7 @@
 //! is the passivity controller of Hannaford and Ryu, IEEE Trans. Robot. Autom. 18 (2002) 1-10.
 
 use super::machine::{Machine, Run};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
 
 /// Share of the greatest energy by which a balance may be off, in (ω·h)²: what a step of the fast
 /// integrator leaves of a ring that nothing damps is an eighth of that.

@@ -1,14 +1,14 @@
 //! A contact alone with the effects that act on it: where it is, and what reaches it in a sample.
 
 use super::machine::{Machine, Run};
-use crate::body::Body;
-use crate::drive::Drive;
-use crate::effects::{AnyEffect, Effects, Passage};
-use crate::error::Result;
 use crate::friction::{Channels, Entry, EntryReader};
-use crate::naming::{BODY, Place};
-use crate::scalar::Scalar;
-use crate::sensor::Sensor;
+use crate::math::scalar::Scalar;
+use crate::plant::body::Body;
+use crate::plant::drive::Drive;
+use crate::plant::effects::{AnyEffect, Effects, Passage};
+use crate::plant::naming::{BODY, Place};
+use crate::plant::sensor::Sensor;
+use crate::support::error::Result;
 
 /// Of what a body carries, what a contact needs of it that is moved as its caller says.
 const CARRIED: [&str; 5] = ["position", "time", "path", "friction", "relaxed"];

@@ -1,6 +1,6 @@
 //! A mass between the ends of a gap that yield, behind a motor whose motion is given.
 
-use crate::scalar::sign;
+use crate::math::scalar::sign;
 
 /// Changes between flight and contact that a sample may have; after these the mass stays at the end.
 const MOST_CHANGES: usize = 16;

@@ -2,8 +2,8 @@
 
 use super::contact::Held;
 use crate::friction::{Event, FrictionLaw, Motion};
-use crate::scalar::Scalar;
-use crate::work;
+use crate::math::scalar::Scalar;
+use crate::support::work;
 
 /// Mode changes allowed within one step before the rest is taken in the present mode: a guard
 /// against chatter at a degenerate set of parameters, never reached by a sane one.
@@ -13,7 +13,7 @@ const MOST_EVENTS: u32 = 16;
 pub trait Stepper<S: Scalar, L: FrictionLaw<S>> {
     /// An attempted step.
     type Attempt: Copy;
-    /// What one costs, see [`crate::work`].
+    /// What one costs, see [`crate::support::work`].
     const COST: u64 = work::STEP;
 
     /// Attempts a step of this duration in the present contact mode.
@@ -258,7 +258,7 @@ fn locate<S: Scalar>(span: S, beyond: f64, mut margin: impl FnMut(S) -> S) -> S 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Dual;
+    use crate::math::scalar::Dual;
 
     #[test]
     fn an_event_is_located_with_the_derivative_of_its_time() {

@@ -4,9 +4,9 @@ use super::events::{Stepper, not_beyond_a_stop};
 use super::glide::Verlet;
 use super::machine::{Machine, Run, hold};
 use super::{Integrator, steep};
-use crate::effects::Situation;
 use crate::friction::{Channels, FrictionLaw, Motion};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
+use crate::plant::effects::Situation;
 
 /// The fast integrator over one sample.
 ///

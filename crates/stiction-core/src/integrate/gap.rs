@@ -1,6 +1,6 @@
 //! A second mass in a gap, seen from a measured motion of the motor.
 
-use crate::scalar::{COLUMNS, Scalar, sign};
+use crate::math::scalar::{COLUMNS, Scalar, sign};
 
 use super::ends::{Course, Ends, Mass};
 
@@ -202,7 +202,7 @@ fn drawn(place: u64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Dual;
+    use crate::math::scalar::Dual;
 
     /// Share, width, contact time, damping ratio and damping of the load.
     const NUMBERS: [f64; 5] = [0.3, 3e-3, 1.5e-3, 0.4, 0.3];

@@ -13,7 +13,7 @@ use super::response::{Response, halves};
 use std::ops::Range;
 
 use crate::friction::{Channels, FrictionLaw, Motion};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// (ω·h)² below which a step is not fitted to a spring.
 const SOFTEST: f64 = 1e-6;

@@ -4,13 +4,13 @@ use super::budget::Budget;
 use super::glide::{Acting, Efforts, Glide, Stillness, Verlet};
 use super::levels_are_fine;
 use super::shaft::Shaft;
-use crate::body::Body;
-use crate::drive::Drive;
-use crate::effects::{Effects, Passage, Relaxation, Situation};
 use crate::friction::Channels;
 use crate::friction::elements::plastic::Plastic;
-use crate::scalar::{Scalar, sign};
-use crate::sensor::Sensor;
+use crate::math::scalar::{Scalar, sign};
+use crate::plant::body::Body;
+use crate::plant::drive::Drive;
+use crate::plant::effects::{Effects, Passage, Relaxation, Situation};
+use crate::plant::sensor::Sensor;
 
 /// Drive, body, effects and sensor.
 #[derive(Debug, Clone)]

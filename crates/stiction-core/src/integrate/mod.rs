@@ -39,10 +39,10 @@ pub use shaft::Beyond;
 
 use std::ops::Range;
 
-use crate::error::{Error, Result};
 use crate::friction::FrictionLaw;
-use crate::scalar::Scalar;
-use crate::work::{self, Meter};
+use crate::math::scalar::Scalar;
+use crate::support::error::{Error, Result};
+use crate::support::work::{self, Meter};
 
 /// Which integrator advances the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -81,7 +81,7 @@ const STEEP: u64 = 10;
 const STEEP_REFERENCE: u64 = 80;
 
 impl Integrator {
-    /// What a step costs, see [`crate::work`].
+    /// What a step costs, see [`crate::support::work`].
     pub(crate) const fn of_step<S: Scalar>(self, steep: bool) -> u64 {
         let steps = match (self, steep) {
             (Self::Fast, false) => 1,
@@ -341,13 +341,13 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Body;
-    use crate::drive::Drive;
-    use crate::effects::Effects;
     use crate::friction::FrictionLaw;
     use crate::friction::coulomb::Coulomb;
     use crate::friction::elements::plastic::Plastic;
-    use crate::sensor::Sensor;
+    use crate::plant::body::Body;
+    use crate::plant::drive::Drive;
+    use crate::plant::effects::Effects;
+    use crate::plant::sensor::Sensor;
 
     const INERTIA: f64 = 0.01;
 

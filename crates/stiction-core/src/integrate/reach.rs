@@ -3,9 +3,9 @@
 use stiction_dispatch::Task;
 
 use super::machine::Machine;
-use crate::effects::Situation;
 use crate::friction::Channels;
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
+use crate::plant::effects::Situation;
 
 impl<S: Scalar> Machine<S> {
     /// What reaches the contact, and the effort of the drive and the rest of it but the load, to places

@@ -4,9 +4,9 @@ use super::events::{Stepper, not_beyond_a_stop};
 use super::fast::Attempt;
 use super::machine::{Machine, Run, hold};
 use super::{Integrator, steep};
-use crate::effects::Situation;
 use crate::friction::{FrictionLaw, INTERNAL, Motion};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::plant::effects::Situation;
 
 /// The reference integrator over one sample.
 pub(super) struct Reference<'a, S: Scalar> {

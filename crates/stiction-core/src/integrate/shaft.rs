@@ -1,8 +1,8 @@
 //! A second mass on a shaft: as part of a simulated machine, and seen from a measured motion.
 
 use super::gap::{Bounce, Flight};
-use crate::effects::{Coupling, SecondMass};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::plant::effects::{Coupling, SecondMass};
 
 /// The shaft of a machine that is simulated, or the gap in its place.
 #[derive(Debug, Clone, Copy)]
@@ -228,7 +228,7 @@ impl<S: Scalar> Twist<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Dual;
+    use crate::math::scalar::Dual;
 
     const SHARE: f64 = 0.4;
     const INERTIA: f64 = 0.01;

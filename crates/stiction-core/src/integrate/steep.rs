@@ -3,7 +3,7 @@
 use super::fast::Attempt;
 use super::machine::{Machine, Run};
 use crate::friction::{FrictionLaw, Motion, Push};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Parts of a step of the reference integrator.
 const FINER: u32 = 8;

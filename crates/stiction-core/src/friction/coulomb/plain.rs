@@ -1,10 +1,10 @@
 //! Rests that hold and slides that go on, in loops of their own.
 
 use super::{Coulomb, CoulombState};
-use crate::exponential::fading_within;
 use crate::friction::elements::stribeck::{fall_power, fall_slope};
 use crate::integrate::{Efforts, Glide, Seen, not_beyond_a_stop};
-use crate::scalar::{Scalar, sign};
+use crate::math::exponential::fading_within;
+use crate::math::scalar::{Scalar, sign};
 
 impl<S: Scalar> Coulomb<S> {
     /// Steps until a slide ends, through break-aways.

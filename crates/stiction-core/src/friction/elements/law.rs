@@ -2,11 +2,11 @@
 
 use super::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
 use super::entry::Entry;
-use crate::error::Result;
+use crate::batch::lanes::Abreast;
 use crate::integrate::{Efforts, Glide, Seen};
-use crate::lanes::Abreast;
-use crate::parameter::{OptionSpec, ParameterSpec};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 /// State of a law: owned by the caller, changed by `commit` and `switch` alone.
 pub trait LawState<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
@@ -149,7 +149,7 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         false
     }
     /// What a step of [`FrictionLaw::glide`] takes, in steps in a row of a law with one exponential
-    /// ([`crate::work`]).
+    /// ([`crate::support::work`]).
     #[inline(always)]
     fn glide_cost(&self) -> u64 {
         1
@@ -170,7 +170,7 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         None
     }
     /// What takes motors with contacts like this one through their samples side by side; see
-    /// [`crate::lanes`].
+    /// [`crate::batch::lanes`].
     fn abreast(&self) -> Option<Abreast<S, Self>> {
         None
     }

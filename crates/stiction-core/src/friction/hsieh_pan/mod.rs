@@ -17,11 +17,11 @@ use super::elements::stribeck::{check_levels, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::{Error, Result};
+use crate::batch::lanes::{self, Abreast};
 use crate::integrate::{Efforts, Glide, Seen};
-use crate::lanes::{self, Abreast};
-use crate::parameter::{OptionSpec, ParameterSpec};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::support::error::{Error, Result};
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 use parameters::OPTIONS;
 pub use parameters::{HsiehPanParameters, HsiehPanStart};

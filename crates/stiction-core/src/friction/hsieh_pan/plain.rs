@@ -8,7 +8,7 @@ use super::super::{Motion, Outcome};
 use super::HsiehPan;
 use super::state::HsiehPanState;
 use crate::integrate::{Efforts, Glide, Seen};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// The slope right after a reversal: rare, and a function so that nobody waits for the choice.
 #[cold]

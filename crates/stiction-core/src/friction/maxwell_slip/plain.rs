@@ -3,7 +3,7 @@
 use super::{MaxwellSlip, MaxwellSlipState};
 use crate::friction::elements::yield_curve::{Course, YieldCurve};
 use crate::integrate::{Efforts, Glide, Seen};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 impl<S: Scalar> MaxwellSlip<S> {
     /// Steps along branches, all of them exponential or not, until a reverse point more needs room.

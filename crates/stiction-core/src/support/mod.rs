@@ -1,0 +1,8 @@
+//! What every room stands on beside numbers: errors, parameters, plain data, and the bounds of a call.
+
+pub mod error;
+pub mod finite;
+pub mod interrupt;
+#[macro_use]
+pub mod parameter;
+pub mod work;
