@@ -25,7 +25,6 @@ LOOKS_UP = {
     ("friction", "simulate"),
     ("friction", "batch"),
     ("plant", "integrate"),
-    ("simulate", "inverse"),
 }
 """Rooms that do not stand on those below them alone yet."""
 

@@ -36,4 +36,4 @@ pub use inverse::{follow, kernel, least_squares, sensitivity, shoot, signatures,
 pub use math::{dual, exponential, scalar, trig, wave};
 pub use plant::{body, drive, effects, sensor, servo};
 pub use simulate::{model, motor, segments};
-pub use support::{error, finite, interrupt, parameter, work};
+pub use support::{error, finite, interrupt, motion, parameter, samples, work};

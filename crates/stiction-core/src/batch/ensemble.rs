@@ -11,12 +11,11 @@ use crate::batch::lanes::{self, Job, Width};
 use crate::friction::LawSpec;
 use crate::friction::{Law, Statistics};
 use crate::integrate::Integrator;
-use crate::simulate::motor::{
-    Column, EffectSpec, Motor, MotorSpec, PerSample, Running, Standing, Surroundings,
-};
+use crate::simulate::motor::{Column, EffectSpec, Motor, MotorSpec, Running, Standing};
 use crate::support::error::{Error, Result};
 use crate::support::finite;
 use crate::support::interrupt::{self, Pace};
+use crate::support::samples::{PerSample, Surroundings};
 use crate::support::work::{self, Meter};
 
 /// What members of an ensemble differ in: rows of values, one for each path.

@@ -6,14 +6,14 @@ use stiction_dispatch::Task;
 
 use crate::friction::{Channels, FrictionLaw, LawState, Motion};
 use crate::integrate::{Along, Beyond, Budget, Machine, Run};
-use crate::inverse::sensitivity::MeasuredMotion;
 use crate::inverse::track::{Stop, Track};
 use crate::math::scalar::Scalar;
-use crate::plant::drive::Way;
+use crate::plant::drive::{Way, arriving};
 use crate::plant::effects::{Passage, Situation};
 use crate::simulate::model::CHUNK;
 use crate::simulate::motor::Running;
 use crate::support::interrupt;
+use crate::support::motion::MeasuredMotion;
 
 /// Efforts at the end of a sample.
 #[derive(Debug, Clone, Copy)]
@@ -405,14 +405,5 @@ impl<S: Scalar> Run<S> {
         self.second_velocity = at.velocity;
         // Whatever moved it, it was not counted.
         self.budget = Budget::unknown();
-    }
-}
-
-/// What of the input reaches the drive during a sample.
-#[inline(always)]
-pub(crate) fn arriving<S: Scalar>(way: &mut Option<&mut Way<S>>, input: f64, dt: f64) -> S {
-    match way {
-        None => S::constant(input),
-        Some(way) => way.pass(input, dt),
     }
 }

@@ -3,6 +3,7 @@
 pub mod follow;
 pub mod kernel;
 pub mod least_squares;
+mod motor;
 pub mod sensitivity;
 pub mod shoot;
 pub mod signatures;

@@ -5,8 +5,10 @@ use crate::inverse::follow::{Efforts, SeesAbout};
 use crate::inverse::kernel::RowKernel;
 use crate::inverse::traces::{Filling, ONCE, Stretch, Traces, put_all};
 use crate::math::scalar::{COLUMNS, Dual, Scalar};
-use crate::simulate::motor::{MotorSpec, PerSample, Rows, Running, Surroundings};
+use crate::simulate::motor::{MotorSpec, Rows, Running};
 use crate::support::error::{Error, Result};
+pub use crate::support::motion::MeasuredMotion;
+use crate::support::samples::{PerSample, Surroundings};
 
 /// Derivatives of position and velocity at the end of every sample.
 #[derive(Debug, Clone)]
@@ -175,23 +177,6 @@ pub struct EffortSensitivity {
     pub ahead: Vec<f64>,
 }
 
-/// A motion that was measured or prescribed, and what acted meanwhile.
-#[derive(Debug, Clone, Copy)]
-pub struct MeasuredMotion<'a> {
-    /// Positions, one more than there are samples.
-    pub positions: &'a [f64],
-    /// Inputs.
-    pub inputs: PerSample<'a>,
-    /// What acts beside them.
-    pub around: Surroundings<'a>,
-    /// Durations.
-    pub dt: PerSample<'a>,
-    /// Whether friction of a rigid contact is its mean about each stamp (see
-    /// [`Running::follow_about`]), not its value there, and whether a contact that yields goes through
-    /// where the motion turns between two stamps.
-    pub averaged: bool,
-}
-
 impl EffortSensitivity {
     pub(crate) fn zeros(parameters: usize, motion: &MeasuredMotion<'_>) -> Self {
         let zeros = || vec![0.0; parameters * motion.samples()];
@@ -212,19 +197,6 @@ impl EffortSensitivity {
 }
 
 impl MeasuredMotion<'_> {
-    /// Samples between the positions.
-    pub fn samples(&self) -> usize {
-        self.positions.len().saturating_sub(1)
-    }
-
-    /// Checks that there is a value for every sample.
-    pub fn check(&self) -> Result<()> {
-        let wanted = self.samples();
-        self.inputs.check("input", wanted)?;
-        self.around.check(wanted)?;
-        self.dt.check("dt", wanted)
-    }
-
     /// Follows the motion and hands over the traces of a pass, stretch by stretch.
     pub(crate) fn differentiate(
         &self,

@@ -4,12 +4,14 @@ use std::f64::consts::PI;
 
 use crate::friction::FrictionLaw;
 use crate::integrate::LONGEST_PHASE;
-use crate::inverse::sensitivity::{MeasuredMotion, Start, passes, seeded};
+use crate::inverse::sensitivity::{Start, passes, seeded};
 use crate::inverse::track::Track;
 use crate::math::scalar::{COLUMNS, Dual, Scalar};
-use crate::simulate::motor::{MotorSpec, PerSample, Running};
+use crate::simulate::motor::{MotorSpec, Running};
 use crate::support::error::{Error, Result};
 use crate::support::interrupt;
+use crate::support::motion::MeasuredMotion;
+use crate::support::samples::PerSample;
 use crate::support::work::{self, Meter};
 
 /// ω·h above which a sample of a window is divided where the ring is too fast for the weights of the

@@ -4,9 +4,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::inverse::kernel::RowKernel;
-use crate::inverse::sensitivity::{
-    EffortSensitivity, MeasuredMotion, Start, Target, columns, seeded,
-};
+use crate::inverse::sensitivity::{EffortSensitivity, Start, Target, columns, seeded};
 use crate::inverse::shoot::{Windows, shoot_response};
 use crate::inverse::traces::Traces;
 use crate::math::scalar::{COLUMNS, Dual};
@@ -14,6 +12,7 @@ use crate::plant::effects::{EffectRecord, Hook};
 use crate::simulate::motor::{EffectSpec, MotorSpec, Running};
 use crate::support::error::Result;
 use crate::support::interrupt;
+use crate::support::motion::MeasuredMotion;
 
 mod direct;
 mod windows;

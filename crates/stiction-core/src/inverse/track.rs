@@ -1,7 +1,7 @@
 //! The positions behind given readings, and where between two of them a machine stops.
 
 use crate::math::scalar::Scalar;
-use crate::simulate::motor::PerSample;
+use crate::support::samples::PerSample;
 
 /// Stamps before a stop that tell when it was: fewer know little over coarse counts, and over more the
 /// deceleration changes.

@@ -339,6 +339,15 @@ impl<S: Scalar> Way<S> {
     }
 }
 
+/// What of the input reaches the drive during a sample.
+#[inline(always)]
+pub(crate) fn arriving<S: Scalar>(way: &mut Option<&mut Way<S>>, input: f64, dt: f64) -> S {
+    match way {
+        None => S::constant(input),
+        Some(way) => way.pass(input, dt),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,9 +2,10 @@
 
 use crate::friction::{FrictionLaw, LawState};
 use crate::integrate::{Account, Adaptive, LONGEST_PHASE, Machine, Run, parts};
-use crate::simulate::motor::{Column, Motor, Running, Surroundings};
+use crate::simulate::motor::{Column, Motor, Running};
 use crate::support::error::{Error, Result};
 use crate::support::interrupt;
+use crate::support::samples::Surroundings;
 use crate::support::work::{self, Meter};
 
 /// A tenth of an arc-second in rad.

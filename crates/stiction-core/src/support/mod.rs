@@ -3,6 +3,8 @@
 pub mod error;
 pub mod finite;
 pub mod interrupt;
+pub mod motion;
 #[macro_use]
 pub mod parameter;
+pub mod samples;
 pub mod work;

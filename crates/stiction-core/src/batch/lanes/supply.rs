@@ -8,7 +8,7 @@ use super::team::Member;
 use crate::batch::ensemble::{Inputs, Plan, Rows};
 use crate::friction::FrictionLaw;
 use crate::math::scalar::Scalar;
-use crate::simulate::motor::{PerSample, Surroundings};
+use crate::support::samples::{PerSample, Surroundings};
 
 /// The drives of a team and what they are about to do.
 pub struct Supply {

@@ -14,8 +14,9 @@ use crate::friction::{FrictionLaw, LawState};
 use crate::integrate::{Integrator, MOST_PARTS, Machine, Run, Steps, step};
 use crate::math::scalar::Scalar;
 use crate::simulate::model::CHUNK;
-use crate::simulate::motor::{Column, PerSample, Running};
+use crate::simulate::motor::{Column, Running};
 use crate::support::interrupt;
+use crate::support::samples::PerSample;
 
 /// Members of a team at most: two blocks share the waiting, and more leave the nearest cache.
 const MOST: usize = 2 * WIDTH;

@@ -6,7 +6,7 @@ use stiction_dispatch::{Task, Width};
 
 use crate::inverse::follow::{Efforts, Whereabouts};
 use crate::inverse::kernel::RowKernel;
-use crate::inverse::sensitivity::{MeasuredMotion, Start, Target, seeded};
+use crate::inverse::sensitivity::{Start, Target, seeded};
 use crate::inverse::traces::Reach;
 use crate::math::scalar::{Dual, Scalar};
 use crate::math::trig;
@@ -15,6 +15,7 @@ use crate::plant::effects::{
 };
 use crate::simulate::motor::{MotorSpec, Running};
 use crate::support::interrupt;
+use crate::support::motion::MeasuredMotion;
 
 /// Share of the usual input by which a gain of the input map is moved to see what it does; such maps
 /// are made of straight pieces, so any small step gives the derivative.

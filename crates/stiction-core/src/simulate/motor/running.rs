@@ -1,18 +1,18 @@
 //! A motor over some number type, on its way.
 
+use super::MotorSpec;
 use super::column::{Rows, Showing, Told};
-use super::{MotorSpec, PerSample, Surroundings};
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
     Acting, Division, Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, Steps,
     Stillness, finer, parts, sample,
 };
-use crate::inverse::follow::arriving;
 use crate::math::scalar::Scalar;
-use crate::plant::drive::Way;
+use crate::plant::drive::{Way, arriving};
 use crate::simulate::model::CHUNK;
 use crate::simulate::range::{Range, ordinary_motor};
 use crate::support::error::{Error, Result};
+use crate::support::samples::{PerSample, Surroundings};
 use crate::support::work::{self, Meter};
 
 fn whole_parts(parts: f64, most: f64, dt: f64) -> Result<u32> {

@@ -1,4 +1,4 @@
-//! What acts on a motor beside its input, sample by sample.
+//! What changes from sample to sample, and what acts on a motor beside its input.
 
 use crate::support::error::{Error, Result};
 
@@ -27,7 +27,7 @@ impl Surroundings<'_> {
     }
 
     /// Whether the drive is always on, and temperature and transmitted effort are always the same.
-    pub(super) fn is_steady(&self) -> bool {
+    pub(crate) fn is_steady(&self) -> bool {
         let changes = |each| matches!(each, Some(PerSample::Each(_)));
         self.enabled.is_none() && !changes(self.temperature) && !changes(self.transmitted)
     }
@@ -113,7 +113,7 @@ impl PerSample<'_> {
     }
 
     /// The sample from which on the number is another one, at most `end`.
-    pub(super) fn same_until(&self, from: usize, end: usize) -> usize {
+    pub(crate) fn same_until(&self, from: usize, end: usize) -> usize {
         match self {
             Self::Same(_) => end,
             Self::Each(values) => {
