@@ -24,7 +24,6 @@ LOOKS_UP = {
     ("friction", "integrate"),
     ("friction", "simulate"),
     ("friction", "batch"),
-    ("plant", "integrate"),
 }
 """Rooms that do not stand on those below them alone yet."""
 

@@ -7,13 +7,13 @@
 
 use std::cell::Cell;
 
-use super::budget::Work;
 use super::events::Stepper;
-use super::machine::{Machine, Run};
 use super::row::{Rows, Taken};
 use super::swing::{Landing, Swing, located};
 use crate::friction::{FrictionLaw, LawState, Motion};
 use crate::math::scalar::sign;
+use crate::plant::Work;
+use crate::plant::{Machine, Run};
 use crate::support::error::Error;
 use crate::support::work::{IN_A_ROW, Meter, STEP};
 

@@ -2,11 +2,12 @@
 
 use super::events::{Stepper, not_beyond_a_stop};
 use super::glide::Verlet;
-use super::machine::{Machine, Run, hold};
+use super::plain::hold;
 use super::{Integrator, steep};
 use crate::friction::{Channels, FrictionLaw, Motion};
 use crate::math::scalar::Scalar;
 use crate::plant::effects::Situation;
+use crate::plant::{Machine, Run};
 
 /// The fast integrator over one sample.
 ///

@@ -8,8 +8,8 @@
 use stiction_dispatch::Task;
 
 use super::clock::after_steps;
-use super::machine::Run;
 use super::response::{Response, halves};
+use crate::plant::Run;
 use std::ops::Range;
 
 use crate::friction::{Channels, FrictionLaw, Motion};

@@ -6,41 +6,31 @@
 //! all go through the same loop.
 
 mod adaptive;
-mod budget;
 mod clock;
 mod contact;
-mod contact_effects;
-mod ends;
 mod events;
 mod fast;
-mod gap;
 mod glide;
-mod machine;
-mod reach;
+mod plain;
 mod reference;
 mod response;
 mod row;
-mod shaft;
 mod steep;
 mod swing;
 
 pub use adaptive::{Account, Adaptive};
-pub use budget::Budget;
-use budget::Work;
 pub use clock::after_steps;
 pub use contact::{Along, Held};
-pub use contact_effects::{ContactEffects, Reach};
 pub(crate) use events::not_beyond_a_stop;
 use events::through_likely_events;
 pub use events::{Stepper, quiet, through_events};
 pub use glide::{Acting, Efforts, Glide, Places, Plain, Seen, Stillness, Verlet, glide_on};
-pub use machine::{Machine, Run};
-pub use shaft::Beyond;
 
 use std::ops::Range;
 
 use crate::friction::FrictionLaw;
 use crate::math::scalar::Scalar;
+use crate::plant::{Machine, Run, Work};
 use crate::support::error::{Error, Result};
 use crate::support::work::{self, Meter};
 
@@ -344,6 +334,7 @@ mod tests {
     use crate::friction::FrictionLaw;
     use crate::friction::coulomb::Coulomb;
     use crate::friction::elements::plastic::Plastic;
+    use crate::plant::Shaft;
     use crate::plant::body::Body;
     use crate::plant::drive::Drive;
     use crate::plant::effects::Effects;
@@ -400,13 +391,8 @@ mod tests {
         let (share, stiffness, input) = (0.4, 50.0, 0.2);
         let mut machine = machine();
         let inertia = INERTIA * share;
-        machine.shaft = Some(super::shaft::Shaft {
-            inertia,
-            stiffness,
-            damping: 0.0,
-            play: None,
-            load_damping: 0.0,
-        });
+        machine.shaft =
+            Some(Shaft { inertia, stiffness, damping: 0.0, play: None, load_damping: 0.0 });
         machine.inertia = INERTIA * (1.0 - share);
         machine.lightness = 1.0 / machine.inertia;
         let omega = (stiffness / (INERTIA * share * (1.0 - share))).sqrt();

@@ -2,11 +2,12 @@
 
 use super::events::{Stepper, not_beyond_a_stop};
 use super::fast::Attempt;
-use super::machine::{Machine, Run, hold};
+use super::plain::hold;
 use super::{Integrator, steep};
 use crate::friction::{FrictionLaw, INTERNAL, Motion};
 use crate::math::scalar::{Scalar, sign};
 use crate::plant::effects::Situation;
+use crate::plant::{Machine, Run};
 
 /// The reference integrator over one sample.
 pub(super) struct Reference<'a, S: Scalar> {

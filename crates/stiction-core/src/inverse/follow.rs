@@ -5,11 +5,12 @@ use std::ops::Range;
 use stiction_dispatch::Task;
 
 use crate::friction::{Channels, FrictionLaw, LawState, Motion};
-use crate::integrate::{Along, Beyond, Budget, Machine, Run};
+use crate::integrate::Along;
 use crate::inverse::track::{Stop, Track};
 use crate::math::scalar::Scalar;
 use crate::plant::drive::{Way, arriving};
 use crate::plant::effects::{Passage, Situation};
+use crate::plant::{Beyond, Budget, Machine, Run};
 use crate::simulate::model::CHUNK;
 use crate::simulate::motor::Running;
 use crate::support::interrupt;

@@ -1,10 +1,10 @@
 //! Exact derivatives by parameters: the same simulation over dual numbers.
 
-use crate::integrate::{Machine, Run};
 use crate::inverse::follow::{Efforts, SeesAbout};
 use crate::inverse::kernel::RowKernel;
 use crate::inverse::traces::{Filling, ONCE, Stretch, Traces, put_all};
 use crate::math::scalar::{COLUMNS, Dual, Scalar};
+use crate::plant::{Machine, Run};
 use crate::simulate::motor::{MotorSpec, Rows, Running};
 use crate::support::error::{Error, Result};
 pub use crate::support::motion::MeasuredMotion;

@@ -6,10 +6,10 @@
 
 use std::borrow::Cow;
 
+use super::drive::Way;
+use super::effects::Effects;
+use super::run::Run;
 use crate::friction::Entry;
-use crate::integrate::Run;
-use crate::plant::drive::Way;
-use crate::plant::effects::Effects;
 use crate::support::error::Error;
 
 /// Before the name of a law's state that is also one of a motor's own.

@@ -1,7 +1,8 @@
 //! Runs of inputs that are held long: steps as long as an error allows, rests in one evaluation.
 
 use crate::friction::{FrictionLaw, LawState};
-use crate::integrate::{Account, Adaptive, LONGEST_PHASE, Machine, Run, parts};
+use crate::integrate::{Account, Adaptive, LONGEST_PHASE, parts};
+use crate::plant::{Machine, Run};
 use crate::simulate::motor::{Column, Motor, Running};
 use crate::support::error::{Error, Result};
 use crate::support::interrupt;

@@ -3,8 +3,9 @@
 use stiction_dispatch::{Mask, Vector};
 
 use crate::friction::FrictionLaw;
-use crate::integrate::{Run, Verlet, after_steps};
+use crate::integrate::{Verlet, after_steps};
 use crate::math::scalar::Scalar;
+use crate::plant::Run;
 
 /// Lanes of a block: one vector of the widest processors, two or four of others.
 pub const WIDTH: usize = stiction_dispatch::ROW;

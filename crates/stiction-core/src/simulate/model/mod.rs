@@ -6,9 +6,10 @@ mod standing;
 use std::borrow::Cow;
 
 use crate::friction::{AnyState, AnyTrial, Channels, Entry, Law, LawState, Statistics};
-use crate::integrate::{ContactEffects, Held, Run, through_events};
+use crate::integrate::{Held, through_events};
 use crate::plant::effects::{EffectSpec, Effects};
 use crate::plant::naming::{blamed, parted, qualified};
+use crate::plant::{ContactEffects, Run};
 use crate::simulate::range::{Range, ordinary, sound};
 use crate::support::error::{Error, Result};
 use crate::support::finite;

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 
 use super::{EVENT_ROOM, qualified};
 use crate::friction::{AnyState, AnyTrial, Channels, Entry, FrictionLaw, Law, LawState, Outcome};
-use crate::integrate::{ContactEffects, Held, Reach, through_events};
+use crate::integrate::{Held, through_events};
 use crate::math::scalar::Scalar;
 use crate::plant::effects::EffectSpec;
+use crate::plant::{ContactEffects, Reach};
 
 /// The state of a law, and of effects where there are any.
 #[derive(Debug, Clone)]

@@ -5,9 +5,10 @@ use std::ops::Range;
 
 use crate::friction::LawSpec;
 use crate::friction::LawState;
-use crate::integrate::{Machine, Places, Run, Seen};
+use crate::integrate::{Places, Seen};
 use crate::math::scalar::Scalar;
 use crate::plant::naming::{COLUMNS, of_the_law, qualified};
+use crate::plant::{Machine, Run};
 use crate::support::error::{Error, Result};
 
 /// What a trajectory can show beside the law's own states.

@@ -1,7 +1,7 @@
 //! The contact of a motor, alone: from a friction model, and as one.
 
 use super::{EffectSpec, Motor, MotorSpec};
-use crate::integrate::Budget;
+use crate::plant::Budget;
 use crate::simulate::model::FrictionModel;
 use crate::support::error::Result;
 

@@ -11,7 +11,7 @@ mod watch;
 use std::borrow::Cow;
 
 use crate::friction::{AnyState, Entry, LawState, Statistics};
-use crate::integrate::Budget;
+use crate::plant::Budget;
 use crate::support::error::{Error, Result};
 use crate::support::interrupt::due;
 

@@ -4,11 +4,12 @@ use super::MotorSpec;
 use super::column::{Rows, Showing, Told};
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
-    Acting, Division, Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Machine, Plain, Run, Steps,
-    Stillness, finer, parts, sample,
+    Acting, Division, Efforts, Integrator, LONGEST_PHASE, MOST_PARTS, Plain, Steps, Stillness,
+    finer, parts, sample,
 };
 use crate::math::scalar::Scalar;
 use crate::plant::drive::{Way, arriving};
+use crate::plant::{Machine, Run};
 use crate::simulate::model::CHUNK;
 use crate::simulate::range::{Range, ordinary_motor};
 use crate::support::error::{Error, Result};

@@ -2,8 +2,9 @@
 
 use crate::friction::Law;
 use crate::friction::LawSpec;
-use crate::integrate::{Integrator, Machine};
+use crate::integrate::Integrator;
 use crate::math::scalar::Scalar;
+use crate::plant::Machine;
 use crate::plant::body::Body;
 use crate::plant::drive::Drive;
 use crate::plant::effects::{EffectSpec, Effects};

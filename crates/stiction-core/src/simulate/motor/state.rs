@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::Running;
 use crate::friction::{Entry, EntryReader, LawState};
-use crate::integrate::Budget;
+use crate::plant::Budget;
 use crate::plant::drive::Way;
 use crate::plant::naming::{BODY, BUDGET, blamed, parted, qualified};
 use crate::support::error::Result;

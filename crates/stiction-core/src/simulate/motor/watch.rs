@@ -2,7 +2,7 @@
 
 use super::Running;
 use crate::friction::{AnyState, Entry, LawState};
-use crate::integrate::Run;
+use crate::plant::Run;
 use crate::plant::drive::Way;
 use crate::plant::effects::Effects;
 use crate::simulate::range::sound;

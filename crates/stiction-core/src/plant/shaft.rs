@@ -1,8 +1,8 @@
 //! A second mass on a shaft: as part of a simulated machine, and seen from a measured motion.
 
+use super::effects::{Coupling, SecondMass};
 use super::gap::{Bounce, Flight};
 use crate::math::scalar::{Scalar, sign};
-use crate::plant::effects::{Coupling, SecondMass};
 
 /// The shaft of a machine that is simulated, or the gap in its place.
 #[derive(Debug, Clone, Copy)]

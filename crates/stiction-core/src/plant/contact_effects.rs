@@ -1,13 +1,14 @@
 //! A contact alone with the effects that act on it: where it is, and what reaches it in a sample.
 
-use super::machine::{Machine, Run};
+use super::body::Body;
+use super::drive::Drive;
+use super::effects::{AnyEffect, Effects, Passage};
+use super::machine::Machine;
+use super::naming::{BODY, Place};
+use super::run::Run;
+use super::sensor::Sensor;
 use crate::friction::{Channels, Entry, EntryReader};
 use crate::math::scalar::Scalar;
-use crate::plant::body::Body;
-use crate::plant::drive::Drive;
-use crate::plant::effects::{AnyEffect, Effects, Passage};
-use crate::plant::naming::{BODY, Place};
-use crate::plant::sensor::Sensor;
 use crate::support::error::Result;
 
 /// Of what a body carries, what a contact needs of it that is moved as its caller says.

@@ -1,16 +1,15 @@
-//! Everything of a plant but its friction law, and the running state of its body.
+//! Everything of a plant but its friction law.
 
+use super::body::Body;
 use super::budget::Budget;
-use super::glide::{Acting, Efforts, Glide, Stillness, Verlet};
-use super::levels_are_fine;
+use super::drive::Drive;
+use super::effects::{Effects, Passage, Relaxation, Situation};
+use super::run::Run;
+use super::sensor::Sensor;
 use super::shaft::Shaft;
 use crate::friction::Channels;
 use crate::friction::elements::plastic::Plastic;
 use crate::math::scalar::{Scalar, sign};
-use crate::plant::body::Body;
-use crate::plant::drive::Drive;
-use crate::plant::effects::{Effects, Passage, Relaxation, Situation};
-use crate::plant::sensor::Sensor;
 
 /// Drive, body, effects and sensor.
 #[derive(Debug, Clone)]
@@ -23,17 +22,17 @@ pub struct Machine<S: Scalar> {
     pub effects: Effects<S>,
     /// Position sensor.
     pub sensor: Sensor,
-    pub(super) relaxation: Option<Plastic<S>>,
-    pub(super) steady_creep: Option<SteadyCreep<S>>,
-    pub(super) shaft: Option<Shaft<S>>,
+    pub(crate) relaxation: Option<Plastic<S>>,
+    pub(crate) steady_creep: Option<SteadyCreep<S>>,
+    pub(crate) shaft: Option<Shaft<S>>,
     /// Friction of slow sliding, which renews the relaxing junctions.
     sliding: S,
     /// Sum of the stiffnesses that effects add.
     stiffness: f64,
     /// Inertia on the motor's side of the shaft.
-    pub(super) inertia: S,
+    pub(crate) inertia: S,
     /// Its reciprocal.
-    pub(super) lightness: S,
+    pub(crate) lightness: S,
 }
 
 /// Creep that no hardening stops: its speed at a force is `coefficient`·|F|^n.
@@ -49,41 +48,6 @@ impl<S: Scalar> SteadyCreep<S> {
     pub fn speed(&self, force: S) -> S {
         self.coefficient * force.power_of_magnitude(self.exponent) * sign(force.re())
     }
-}
-
-/// Position, velocity and what else of the body runs from step to step.
-#[derive(Debug, Clone, Copy)]
-pub struct Run<S> {
-    /// Position.
-    pub position: S,
-    /// Velocity.
-    pub velocity: S,
-    /// Time on the session clock.
-    pub time: S,
-    /// Path travelled since the session began.
-    pub path: S,
-    /// Displacement since effects last took a sample into their memory.
-    pub moved: S,
-    /// What the gear transmits, where that is known and is not the load.
-    pub transmitted: Option<f64>,
-    /// Temperature in °C, where it is known.
-    pub temperature: Option<f64>,
-    /// What a servo's distance from its goal has summed up to.
-    pub wound: S,
-    /// Whether the drive is on.
-    pub enabled: bool,
-    /// Friction at the end of the last step.
-    pub friction: S,
-    /// Position of the second mass.
-    pub second_position: S,
-    /// Velocity of the second mass.
-    pub second_velocity: S,
-    /// Hardening of the relaxation module.
-    pub relaxed: S,
-    /// Gravity, added efforts and shaft at the end of the last step.
-    pub(super) ambient: S,
-    /// What the contact may give back, beside effects.
-    pub budget: Budget<S>,
 }
 
 impl<S: Scalar> Machine<S> {
@@ -176,7 +140,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Bound of ω² of anything that swings, with this stiffness of the friction.
-    pub(super) fn fastest_square(&self, friction: f64) -> f64 {
+    pub(crate) fn fastest_square(&self, friction: f64) -> f64 {
         let near =
             friction + self.stiffness + self.body.gravity_amplitude.re().abs() + self.servo().0;
         let shaft = self.shaft.map_or((0.0, 0.0), |shaft| {
@@ -192,14 +156,14 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Stiffness and damping by which a servo holds its goal.
-    pub(super) fn servo(&self) -> (f64, f64) {
+    pub(crate) fn servo(&self) -> (f64, f64) {
         let servo = self.drive.servo.as_ref();
         servo.map_or((0.0, 0.0), |servo| servo.stiffness_and_damping(self.drive.gain.re()))
     }
 
     /// Shaft effort on the motor's side.
     #[inline]
-    pub(super) fn shaft(&self, at: &Situation<S>, position: S, velocity: S) -> S {
+    pub(crate) fn shaft(&self, at: &Situation<S>, position: S, velocity: S) -> S {
         self.shaft.map_or(S::constant(0.0), |shaft| {
             shaft.pull(position - at.position, velocity - at.velocity)
         })
@@ -207,7 +171,7 @@ impl<S: Scalar> Machine<S> {
 
     /// Moves the second mass on while the motor goes from one situation to another.
     #[inline]
-    pub(super) fn swing(
+    pub(crate) fn swing(
         &self,
         start: &Situation<S>,
         end: &Situation<S>,
@@ -227,14 +191,14 @@ impl<S: Scalar> Machine<S> {
 
     /// Effort that does not come from input and load.
     #[inline]
-    pub(super) fn ambient(&self, at: &Situation<S>, second: S, second_velocity: S) -> S {
+    pub(crate) fn ambient(&self, at: &Situation<S>, second: S, second_velocity: S) -> S {
         let effort = self.surroundings(at);
         if self.shaft.is_some() { effort + self.shaft(at, second, second_velocity) } else { effort }
     }
 
     /// Gravity and added efforts.
     #[inline]
-    pub(super) fn surroundings(&self, at: &Situation<S>) -> S {
+    pub(crate) fn surroundings(&self, at: &Situation<S>) -> S {
         let gravity = self.body.gravity(at.position);
         if !self.effects.adds_efforts() {
             return gravity + 0.0;
@@ -259,23 +223,12 @@ impl<S: Scalar> Machine<S> {
 
     /// Gravity and added efforts of a bare machine.
     #[inline(always)]
-    pub(super) fn weight(&self) -> S {
+    pub(crate) fn weight(&self) -> S {
         let gravity = self.body.level_gravity();
         match self.effects.even_effort() {
             Some(effort) => gravity + effort,
             None => gravity + 0.0,
         }
-    }
-
-    /// Whether a run is as a step of this bare machine leaves it.
-    pub fn glides(&self, run: &Run<S>) -> bool {
-        run.ambient.re().to_bits() == self.weight().re().to_bits()
-    }
-
-    /// The share of this machine in a step of this duration.
-    #[inline]
-    pub fn verlet(&self, span: S) -> Verlet<S> {
-        Verlet::new(span, self.inertia, self.lightness)
     }
 
     /// Gain and limit of the drive and the weight of this bare machine, as plain numbers.
@@ -294,115 +247,21 @@ impl<S: Scalar> Machine<S> {
         self.drive.direct(input) + load
     }
 
-    /// What else acts on this unchanged machine and its contact under a load after a step that displaces the
-    /// body so far.
-    #[inline(always)]
-    pub fn beside(
-        &self,
-        run: &Run<S>,
-        load: impl FnOnce() -> S,
-        displacement: S,
-        velocity: S,
-        span: S,
-    ) -> Acting<S> {
-        let at = run.situation().after(displacement, velocity, span);
-        let ambient = self.surroundings(&at);
-        if !self.effects.changes_levels() {
-            return Acting::plain(ambient);
-        }
-        Acting { ambient, levels: self.effects.levels(&self.at_contact(&at, load())) }
-    }
-
-    /// Levels of the contact of this unchanged machine under a load where a run is; `arrived` is what was said
-    /// of the place before the velocity was known.
-    #[inline(always)]
-    pub fn levels_of(
-        &self,
-        run: &Run<S>,
-        load: impl FnOnce() -> S,
-        arrived: Option<&Acting<S>>,
-    ) -> (S, S) {
-        match arrived {
-            _ if !self.effects.changes_levels() => Acting::plain(run.ambient).levels,
-            Some(arrived) if !self.effects.asks_speed() => arrived.levels,
-            _ => self.effects.levels(&self.at_contact(&run.situation(), load())),
-        }
-    }
-
-    /// Whether a sample of this machine that begins under these levels, this effort and at this speed needs no
-    /// finer steps than `span`.
-    #[inline(always)]
-    pub fn is_fine(&self, speed: f64, effort: f64, levels: (S, S), span: f64) -> bool {
-        levels_are_fine(levels) && (!self.effects.damps() || self.is_calm(speed, effort, span))
-    }
-
-    /// The same of what damps.
-    #[inline(never)]
-    fn is_calm(&self, speed: f64, effort: f64, span: f64) -> bool {
-        let gained = effort.abs() * span / self.inertia.re();
-        let damping = self.effects.damping(gained + speed.abs());
-        // What `reached` says is no faster, and effects damp no less at a speed than below it.
-        damping * (span / self.inertia.re()) <= 0.999
-    }
-
-    /// What changes around a contact of this unchanged machine at rest, under efforts up to that.
-    pub fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S), span: S) -> Stillness {
-        let mut settled = *run;
-        self.refresh(&mut settled);
-        let same = settled.ambient.re().to_bits() == run.ambient.re().to_bits();
-        let rough = || self.roughness(0.0, span.re());
-        let paid = !self.counts_work() || run.budget.taken.re() >= -rough() * run.budget.swing;
-        if !(same && paid && self.is_fine(0.0, greatest, levels, span.re())) {
-            Stillness::Not
-        } else if self.effects.changes_in_time() {
-            Stillness::Changing
-        } else {
-            Stillness::Whole
-        }
-    }
-
     /// All effort but friction on this bare machine under an input and a load.
     #[inline(always)]
     pub fn bare_effort(&self, input: f64, load: S) -> S {
         self.drive.direct(input) + load + self.weight()
     }
 
-    /// A row of plain steps of this bare or unchanged machine from where a run is; `efforts` says all effort but
-    /// friction in a sample, `parts` in how many steps of `span` it is divided.
-    pub fn glide<E: Efforts<S>, V>(
-        &self,
-        run: Run<S>,
-        efforts: E,
-        seen: V,
-        samples: std::ops::Range<usize>,
-        (span, parts): (S, u32),
-    ) -> Glide<S, E, V> {
-        let verlet = self.verlet(span);
-        let levels = efforts.levels(samples.start, &run, None);
-        let (efforts_of_step, beside) = ((run.ambient, run.ambient), Acting::plain(run.ambient));
-        Glide {
-            verlet,
-            run,
-            efforts,
-            seen,
-            samples,
-            part: 0,
-            parts,
-            levels,
-            efforts_of_step,
-            beside,
-        }
-    }
-
     /// Effort of the drive of a bare machine.
     #[inline(always)]
-    pub(super) fn bare_drive(&self, input: S, enabled: bool) -> S {
+    pub(crate) fn bare_drive(&self, input: S, enabled: bool) -> S {
         if enabled { self.drive.direct(input) } else { S::constant(0.0) }
     }
 
     /// Effort of the drive.
     #[inline]
-    pub(super) fn driven(&self, input: S, at: &Situation<S>) -> S {
+    pub(crate) fn driven(&self, input: S, at: &Situation<S>) -> S {
         if !at.enabled {
             return S::constant(0.0);
         }
@@ -410,7 +269,7 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Speed that a run comes to within a step under this input and load, where effects damp it.
-    pub(super) fn reached(&self, run: &Run<S>, input: S, load: S, span: f64) -> f64 {
+    pub(crate) fn reached(&self, run: &Run<S>, input: S, load: S, span: f64) -> f64 {
         let speed = run.velocity.re().abs();
         let effort = (self.driven(input, &run.situation()) + load + run.ambient).re();
         let gained = effort.abs() * span / self.inertia.re();
@@ -473,7 +332,7 @@ impl<S: Scalar> Machine<S> {
 
     /// What reaches the contact of a bare machine.
     #[inline]
-    pub(super) fn plain_channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
+    pub(crate) fn plain_channels(&self, at: &Situation<S>, effort: S, load: S) -> Channels<S> {
         let load = at.carried(load + self.body.level_gravity());
         Channels { effort, load, temperature: at.temperature, ..Channels::default() }
     }
@@ -492,7 +351,7 @@ impl<S: Scalar> Machine<S> {
 
     /// Whether a friction of this size slides, which renews relaxing junctions.
     #[inline]
-    pub(super) fn slides(&self, friction: S) -> bool {
+    pub(crate) fn slides(&self, friction: S) -> bool {
         friction.re().abs() >= SLIDING_SHARE * self.sliding.re()
     }
 
@@ -519,7 +378,7 @@ impl<S: Scalar> Machine<S> {
     /// Creep of a body at rest, as far as the effort that makes it goes on: what creeps to where the
     /// effort is balanced stays there.
     #[inline]
-    fn not_beyond(&self, effort: S, crept: S) -> S {
+    pub(crate) fn not_beyond(&self, effort: S, crept: S) -> S {
         let gravity = self.body.gravity_amplitude.re().abs();
         let near = self.stiffness + gravity;
         let way = effort.abs() / near;
@@ -529,7 +388,7 @@ impl<S: Scalar> Machine<S> {
     /// Creep no faster than the effort could have driven a free body over all the way that it has crept
     /// since its junctions were new: so it has no energy that the effort did not give.
     #[inline]
-    fn not_faster(&self, effort: S, crept: S, before: S, span: S) -> S {
+    pub(crate) fn not_faster(&self, effort: S, crept: S, before: S, span: S) -> S {
         let half = effort.abs() * span * span / self.body.inertia;
         let most = half + (half * half + half * before * 2.0).sqrt();
         if crept.re().abs() > most.re() { most * sign(crept.re()) } else { crept }
@@ -558,100 +417,3 @@ impl<S: Scalar> Machine<S> {
 
 /// Share of the friction of slow sliding from which on a contact counts as sliding.
 const SLIDING_SHARE: f64 = 0.98;
-
-impl<S: Scalar> Run<S> {
-    /// Where the plant is.
-    #[inline]
-    pub fn situation(&self) -> Situation<S> {
-        Situation {
-            position: self.position,
-            velocity: self.velocity,
-            time: self.time,
-            path: self.path,
-            moved: self.moved,
-            transmitted: self.transmitted,
-            temperature: self.temperature,
-            wound: self.wound,
-            enabled: self.enabled,
-            ..Situation::resting()
-        }
-    }
-
-    /// Gravity, added efforts and shaft at the end of the last step.
-    pub fn ambient(&self) -> S {
-        self.ambient
-    }
-
-    /// The same, to be set to what it was.
-    pub fn ambient_mut(&mut self) -> &mut S {
-        &mut self.ambient
-    }
-
-    /// Whether all of it is made of finite numbers.
-    pub fn is_finite(&self) -> bool {
-        let motion = [self.position, self.velocity, self.time, self.path, self.moved];
-        let rest = [self.wound, self.friction, self.relaxed, self.ambient];
-        let second = [self.second_position, self.second_velocity];
-        motion.iter().chain(&rest).chain(&second).all(|x| x.re().is_finite())
-    }
-
-    /// Whether the motion is no number any more: from there nothing leads back, and steps cost most.
-    #[inline(always)]
-    pub fn is_lost(&self) -> bool {
-        !(self.position + self.velocity).re().is_finite()
-    }
-
-    /// The same state over another number type, with no parameter dependence.
-    pub fn lift<T: Scalar>(&self) -> Run<T> {
-        let lift = |x: S| T::constant(x.re());
-        Run {
-            position: lift(self.position),
-            velocity: lift(self.velocity),
-            time: lift(self.time),
-            path: lift(self.path),
-            moved: lift(self.moved),
-            transmitted: self.transmitted,
-            temperature: self.temperature,
-            wound: lift(self.wound),
-            enabled: self.enabled,
-            friction: lift(self.friction),
-            second_position: lift(self.second_position),
-            second_velocity: lift(self.second_velocity),
-            relaxed: lift(self.relaxed),
-            ambient: lift(self.ambient),
-            budget: self.budget.lift(),
-        }
-    }
-}
-
-/// Holds a resting body for `span` where the contact can: nothing moves but slow creep.
-#[inline]
-pub(super) fn hold<S: Scalar, L: crate::friction::FrictionLaw<S>>(
-    machine: &Machine<S>,
-    run: &mut Run<S>,
-    (input, load): (S, S),
-    law: &L,
-    state: &mut L::State,
-    span: S,
-) -> bool {
-    let at = run.situation();
-    let effort = machine.driven(input, &at) + load + run.ambient;
-    if !law.holds(state, &machine.channels(&at, effort, load)) {
-        return false;
-    }
-    run.friction = effort;
-    run.time += span;
-    // A second mass goes on swinging on the shaft of a motor that is held.
-    machine.swing(&at, &at, span, run);
-    if machine.relaxes() {
-        let (hardened, crept) = machine.relax(run.relaxed, effort, span);
-        let crept =
-            machine.not_faster(effort, machine.not_beyond(effort, crept), run.relaxed, span);
-        run.relaxed = hardened;
-        run.position += crept;
-        run.moved += crept;
-        run.path += crept.abs();
-    }
-    machine.refresh(run);
-    true
-}

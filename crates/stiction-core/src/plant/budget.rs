@@ -6,7 +6,8 @@
 //! counted, and where it would have given back more than it took, the body arrives that much slower. This
 //! is the passivity controller of Hannaford and Ryu, IEEE Trans. Robot. Autom. 18 (2002) 1-10.
 
-use super::machine::{Machine, Run};
+use super::machine::Machine;
+use super::run::Run;
 use crate::math::scalar::{Scalar, sign};
 
 /// Share of the greatest energy by which a balance may be off, in (ω·h)²: what a step of the fast
@@ -48,7 +49,7 @@ impl<S: Scalar> Budget<S> {
 }
 
 /// The work of a contact, counted from step to step under an input and a load.
-pub(super) struct Work<S> {
+pub(crate) struct Work<S> {
     acting: (S, S),
     /// How rough steps are.
     pub rough: f64,

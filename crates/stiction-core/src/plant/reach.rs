@@ -2,10 +2,10 @@
 
 use stiction_dispatch::Task;
 
+use super::effects::Situation;
 use super::machine::Machine;
 use crate::friction::Channels;
 use crate::math::scalar::Scalar;
-use crate::plant::effects::Situation;
 
 impl<S: Scalar> Machine<S> {
     /// What reaches the contact, and the effort of the drive and the rest of it but the load, to places
