@@ -6,10 +6,10 @@ mod plain;
 use super::elements::rigid::{Rigid, held};
 use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, PlainSteps,
+    Statistics,
 };
 use crate::batch::lanes::{self, Abreast};
-use crate::integrate::{Efforts, Glide, Seen};
 use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
 use crate::support::error::Result;
@@ -210,11 +210,7 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, CoulombState<S>>>(
-        &self,
-        state: &mut CoulombState<S>,
-        glide: &mut Glide<S, E, V>,
-    ) {
+    fn glide<G: PlainSteps<S, CoulombState<S>>>(&self, state: &mut CoulombState<S>, glide: &mut G) {
         self.glide_on(state, glide);
     }
 

@@ -2,12 +2,13 @@
 
 mod abreast;
 
+use super::elements::plain_steps::glide_on;
 use super::elements::reachable::reachable;
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, PlainSteps, Rest,
+    Statistics,
 };
 use crate::batch::lanes::{self, Abreast};
-use crate::integrate::{Efforts, Glide, Seen, glide_on};
 use crate::math::scalar::{Scalar, logarithmic_mean, sign};
 use crate::parameters;
 use crate::support::error::Result;
@@ -243,11 +244,7 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, DahlState<S>>>(
-        &self,
-        state: &mut DahlState<S>,
-        glide: &mut Glide<S, E, V>,
-    ) {
+    fn glide<G: PlainSteps<S, DahlState<S>>>(&self, state: &mut DahlState<S>, glide: &mut G) {
         glide_on(self, state, glide);
     }
 

@@ -5,9 +5,8 @@ mod abreast;
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
 use super::elements::lag::{follow, follow_within};
 use super::elements::stribeck::{SlidingLevel, check_levels};
-use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
+use super::{Channels, Entry, FrictionLaw, Motion, Outcome, PlainSteps, Rest};
 use crate::batch::lanes::{self, Abreast};
-use crate::integrate::{Efforts, Glide, Seen};
 use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
 use crate::support::error::Result;
@@ -239,15 +238,11 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, BristleState<S>>>(
-        &self,
-        state: &mut BristleState<S>,
-        glide: &mut Glide<S, E, V>,
-    ) {
-        let (bristle, verlet) = (&self.0, glide.verlet);
-        let duration = glide.verlet.span();
+    fn glide<G: PlainSteps<S, BristleState<S>>>(&self, state: &mut BristleState<S>, glide: &mut G) {
+        let (bristle, verlet) = (&self.0, *glide.verlet());
+        let duration = glide.verlet().span();
         // g at the end of a step is that at the start of the next.
-        let (mut now, mut start_velocity) = (*state, glide.run.velocity);
+        let (mut now, mut start_velocity) = (*state, glide.velocity());
         let mut from = self.level_within(start_velocity);
         while let Some(effort) = glide.next() {
             let slip = Self::slip(bristle.stiffness * now.deflection, start_velocity, &from);

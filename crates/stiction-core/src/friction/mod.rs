@@ -8,6 +8,7 @@ pub mod elements;
 pub use elements::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
 pub use elements::entry::{Entry, EntryReader};
 pub use elements::law::{FrictionLaw, INTERNAL, LawState};
+pub use elements::plain_steps::PlainSteps;
 pub use elements::spec::LawSpec;
 
 use crate::math::scalar::Scalar;

@@ -56,16 +56,7 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     pass_events(stepper, law, state, span);
 }
 
-/// The velocity that an attempt which began with `before` shows to what acts by speed. A rigid contact stops a
-/// body where its velocity would turn round: what lies beyond is cut off, and drag there, of an overshoot of
-/// any size, must not lead back to where it seems that nothing happened.
-#[inline(always)]
-pub(crate) fn not_beyond_a_stop<S: Scalar, L: FrictionLaw<S>>(before: S, velocity: S) -> S {
-    let turned = L::RIGID && before.re() * velocity.re() < 0.0;
-    if turned { S::constant(0.0) } else { velocity }
-}
-
-/// The same where a mode is likely to change, so that nothing is attempted before that is looked for.
+/// [`through_events`] where a mode is likely to change, so that nothing is attempted before that is looked for.
 #[inline]
 pub(super) fn through_likely_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     stepper: &mut P,

@@ -21,10 +21,9 @@ mod swing;
 pub use adaptive::{Account, Adaptive};
 pub use clock::after_steps;
 pub use contact::{Along, Held};
-pub(crate) use events::not_beyond_a_stop;
 use events::through_likely_events;
 pub use events::{Stepper, quiet, through_events};
-pub use glide::{Acting, Efforts, Glide, Places, Plain, Seen, Stillness, Verlet, glide_on};
+pub use glide::{Acting, Efforts, Glide, Places, Plain, Seen, Stillness};
 
 use std::ops::Range;
 

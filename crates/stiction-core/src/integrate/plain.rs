@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use super::glide::{Acting, Efforts, Glide, Stillness, Verlet};
+use super::glide::{Acting, Efforts, Glide, Stillness};
 use super::levels_are_fine;
 use crate::friction::FrictionLaw;
 use crate::math::scalar::Scalar;
+use crate::math::verlet::Verlet;
 use crate::plant::{Machine, Run};
 
 impl<S: Scalar> Machine<S> {

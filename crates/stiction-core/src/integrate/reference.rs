@@ -1,9 +1,10 @@
 //! Runge-Kutta of fourth order on body and internal variables: the yardstick for the fast one.
 
-use super::events::{Stepper, not_beyond_a_stop};
+use super::events::Stepper;
 use super::fast::Attempt;
 use super::plain::hold;
 use super::{Integrator, steep};
+use crate::friction::elements::plain_steps::not_beyond_a_stop;
 use crate::friction::{FrictionLaw, INTERNAL, Motion};
 use crate::math::scalar::{Scalar, sign};
 use crate::plant::effects::Situation;

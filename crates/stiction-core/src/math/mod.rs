@@ -5,4 +5,5 @@ pub mod exponential;
 pub(crate) mod logarithm;
 pub mod scalar;
 pub mod trig;
+pub mod verlet;
 pub mod wave;

@@ -3,8 +3,9 @@
 use stiction_dispatch::{Mask, Vector};
 
 use crate::friction::FrictionLaw;
-use crate::integrate::{Verlet, after_steps};
+use crate::integrate::after_steps;
 use crate::math::scalar::Scalar;
+use crate::math::verlet::Verlet;
 use crate::plant::Run;
 
 /// Lanes of a block: one vector of the widest processors, two or four of others.

@@ -2,8 +2,8 @@
 
 use super::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
 use super::entry::Entry;
+use super::plain_steps::PlainSteps;
 use crate::batch::lanes::Abreast;
-use crate::integrate::{Efforts, Glide, Seen};
 use crate::math::scalar::Scalar;
 use crate::support::error::Result;
 use crate::support::parameter::{OptionSpec, ParameterSpec};
@@ -158,12 +158,7 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// nothing turns round and no mode changes, at level 1. The same to the bit as `advance` and
     /// `commit` step by step, in a loop that the law keeps short.
     #[inline]
-    fn glide<E: Efforts<S>, V: Seen<S, Self::State>>(
-        &self,
-        _state: &mut Self::State,
-        _glide: &mut Glide<S, E, V>,
-    ) {
-    }
+    fn glide<G: PlainSteps<S, Self::State>>(&self, _state: &mut Self::State, _glide: &mut G) {}
     /// The damping beside a spring where that is all that [`FrictionLaw::glide`] goes through from
     /// this state: long runs then take its steps longer.
     fn springs(&self, _state: &Self::State) -> Option<f64> {

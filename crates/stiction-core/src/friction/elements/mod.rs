@@ -13,6 +13,7 @@ pub mod lag;
 pub mod law;
 pub mod loading;
 pub mod memory;
+pub mod plain_steps;
 pub mod plastic;
 pub mod reachable;
 pub mod rigid;

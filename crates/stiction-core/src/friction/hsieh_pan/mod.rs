@@ -15,10 +15,10 @@ use super::elements::series;
 use super::elements::spring::SpringState;
 use super::elements::stribeck::{check_levels, steepest};
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, Rest, Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, PlainSteps, Rest,
+    Statistics,
 };
 use crate::batch::lanes::{self, Abreast};
-use crate::integrate::{Efforts, Glide, Seen};
 use crate::math::scalar::{Scalar, sign};
 use crate::support::error::{Error, Result};
 use crate::support::parameter::{OptionSpec, ParameterSpec};
@@ -373,10 +373,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
+    fn glide<G: PlainSteps<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         self.glide_in_mode(state, glide);
     }
