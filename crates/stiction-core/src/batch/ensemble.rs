@@ -8,10 +8,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::batch::lanes::{self, Job, Width};
-use crate::friction::LawSpec;
-use crate::friction::{Law, Statistics};
+use crate::friction::Statistics;
 use crate::integrate::Integrator;
-use crate::simulate::motor::{Column, EffectSpec, Motor, MotorSpec, Running, Standing};
+use crate::simulate::motor::{Column, Motor, MotorSpec, Running, Standing};
 use crate::support::error::{Error, Result};
 use crate::support::finite;
 use crate::support::interrupt::{self, Pace};
@@ -389,7 +388,7 @@ impl Ensemble {
                 let mut motor = match next {
                     None => break,
                     Some(Work::Team(job, motors)) => {
-                        Law::take_abreast(&job, motors);
+                        lanes::take_abreast(&job, motors);
                         continue;
                     }
                     Some(Work::Alone(motor)) => motor,
@@ -533,39 +532,5 @@ fn simulate(
                 }
             })
         }
-    }
-}
-
-impl MotorSpec {
-    /// Refuses values, in the order of [`MotorSpec::parameters`], that this motor cannot have.
-    pub fn allows(&self, values: &[f64]) -> Result<()> {
-        let (body, rest) = values.split_at(5);
-        let (friction, mut rest) = rest.split_at(self.friction.values.len());
-        let stated: Vec<(String, f64)> = self
-            .friction
-            .record
-            .parameters
-            .iter()
-            .zip(friction)
-            .map(|(spec, value)| (spec.name.to_owned(), *value))
-            .collect();
-        LawSpec::new(self.friction.record.name, &stated, &[])?;
-        for effect in &self.effects {
-            let (own, left) = rest.split_at(effect.values.len());
-            rest = left;
-            let named = effect.record.parameters.iter().zip(own);
-            let stated: Vec<(String, f64)> =
-                named.map(|(spec, value)| (spec.name.to_owned(), *value)).collect();
-            EffectSpec::new(effect.record.name, &stated)?;
-        }
-        Self {
-            inertia: body[0],
-            gain: body[1],
-            gravity_amplitude: body[2],
-            gravity_zero: body[3],
-            weight: body[4],
-            ..self.clone()
-        }
-        .check()
     }
 }

@@ -3,13 +3,13 @@
 mod abreast;
 mod plain;
 
+use super::elements::abreast::SideBySide;
 use super::elements::rigid::{Rigid, held};
 use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, PlainSteps,
     Statistics,
 };
-use crate::batch::lanes::{self, Abreast};
 use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
 use crate::support::error::Result;
@@ -214,8 +214,8 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
         self.glide_on(state, glide);
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     #[inline]

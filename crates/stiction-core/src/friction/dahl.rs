@@ -2,13 +2,13 @@
 
 mod abreast;
 
+use super::elements::abreast::SideBySide;
 use super::elements::plain_steps::glide_on;
 use super::elements::reachable::reachable;
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, PlainSteps, Rest,
     Statistics,
 };
-use crate::batch::lanes::{self, Abreast};
 use crate::math::scalar::{Scalar, logarithmic_mean, sign};
 use crate::parameters;
 use crate::support::error::Result;
@@ -248,8 +248,8 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         glide_on(self, state, glide);
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     // Where the body stays, so does the force.

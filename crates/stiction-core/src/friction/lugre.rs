@@ -2,11 +2,11 @@
 
 mod abreast;
 
+use super::elements::abreast::SideBySide;
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
 use super::elements::lag::{follow, follow_within};
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, PlainSteps, Rest};
-use crate::batch::lanes::{self, Abreast};
 use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
 use crate::support::error::Result;
@@ -269,8 +269,8 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         *state = now;
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     // Where the body stays, so does the force.

@@ -1,7 +1,7 @@
 //! The loop that every step goes through, and the location of events inside it.
 
 use super::contact::Held;
-use crate::friction::{Event, FrictionLaw, Motion};
+use crate::friction::{AnyState, AnyTrial, Catalogued, Event, FrictionLaw, Law, Motion, Outcome};
 use crate::math::scalar::Scalar;
 use crate::support::work;
 
@@ -144,6 +144,24 @@ pub fn quiet<S: Scalar, L: FrictionLaw<S>, const CREEPS: bool>(
     }
     let (trial, motion) = Stepper::<S, L>::attempt(held, law, state, span);
     law.event(state, &trial, &motion).is_none().then_some(trial)
+}
+
+impl<S: Scalar> Law<S> {
+    /// A step at a held velocity, where no contact mode changes in it.
+    pub fn quiet_step<const CREEPS: bool>(
+        &self,
+        state: &AnyState<S>,
+        held: &Held<S, CREEPS>,
+        span: S,
+    ) -> Option<(AnyTrial<S>, Outcome<S>)> {
+        with_law_and_state!(self, state, |law, state| quiet(held, law, state, span)
+            .map(|trial| (any(law, trial), law.outcome(&trial))))
+    }
+}
+
+/// A step of a law, as one of any.
+fn any<S: Scalar, L: Catalogued<S>>(_: &L, trial: L::Trial) -> AnyTrial<S> {
+    L::any(trial)
 }
 
 /// The first event within an attempt of this duration, when, and the attempt up to there.

@@ -3,6 +3,7 @@
 pub mod dual;
 pub mod exponential;
 pub(crate) mod logarithm;
+pub mod row;
 pub mod scalar;
 pub mod trig;
 pub mod verlet;

@@ -1,7 +1,8 @@
 //! What is kept of a team's motion.
 
-use super::block::{Block, Contacts, Row};
 use crate::friction::FrictionLaw;
+use crate::friction::elements::abreast::{Block, Contacts};
+use crate::math::row::Row;
 use crate::math::scalar::Scalar;
 use crate::simulate::motor::Column;
 

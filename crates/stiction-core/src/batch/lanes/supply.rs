@@ -2,11 +2,11 @@
 
 use stiction_dispatch::{CHUNKS, Mask, ROW, Vector, Wide, fetch};
 
-use super::block::{Row, WIDTH};
 use super::record::SAMPLES;
 use super::team::Member;
 use crate::batch::ensemble::{Inputs, Plan, Rows};
 use crate::friction::FrictionLaw;
+use crate::math::row::{Row, WIDTH};
 use crate::math::scalar::Scalar;
 use crate::support::samples::{PerSample, Surroundings};
 

@@ -2,12 +2,12 @@
 
 use stiction_dispatch::{Vector, Wide};
 
-use super::block::{Row, WIDTH};
 use super::record::{Record, SAMPLES};
 use super::supply::{AsTheyAre, spread};
 use super::team::{Job, Team};
 use crate::batch::ensemble::{Keep, Rows};
 use crate::friction::FrictionLaw;
+use crate::math::row::{Row, WIDTH};
 use crate::math::scalar::Scalar;
 use crate::simulate::motor::Column;
 

@@ -1,17 +1,19 @@
 //! Takes a team of motors with one law through its samples.
 
 use std::array::from_mut;
+use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use stiction_dispatch::{Vector, Wide};
 
-use super::block::{Block, Bodies, Contacts, Row, WIDTH, lanes};
 use super::record::{Record, SAMPLES};
 use super::supply::{Ahead, Supply, load_of};
 use super::tally::Tally;
 use crate::batch::ensemble::{Keep, Plan};
-use crate::friction::{FrictionLaw, LawState};
+use crate::friction::elements::abreast::{Block, Bodies, Contacts, SideBySide};
+use crate::friction::{Catalogued, FrictionLaw, LawState};
 use crate::integrate::{Integrator, MOST_PARTS, Steps, step};
+use crate::math::row::{Row, WIDTH, lanes};
 use crate::math::scalar::Scalar;
 use crate::plant::{Machine, Run};
 use crate::simulate::model::CHUNK;
@@ -197,6 +199,41 @@ impl<S: Scalar, L: FrictionLaw<S>, C: Contacts<S, L>> Stretch<'_, '_, S, L, C> {
                 sample += 1;
             }
         }
+    }
+}
+
+/// Takes motors with contacts of one kind that go abreast through their samples.
+pub fn take_abreast(job: &Job<'_>, motors: Vec<Motor<'_>>) {
+    let Some(first) = motors.first() else { return };
+    with_law!(&first.running.law, |law| {
+        let kind = kind_of(law);
+        take(kind, job, motors);
+    });
+}
+
+/// The law of a contact, without the contact.
+fn kind_of<L>(_: &L) -> PhantomData<L> {
+    PhantomData
+}
+
+fn take<L: Catalogued<f64>>(_: PhantomData<L>, job: &Job<'_>, motors: Vec<Motor<'_>>) {
+    let members = motors.into_iter().map(|Motor { number, running, own }| {
+        let pieces = running.division(job.dt).pieces;
+        let Running { machine, law, state, run, .. } = running;
+        let (law, state) = L::among(law, state).expect("motors of an ensemble have one law");
+        Member { number, machine, law, state, run, pieces, own }
+    });
+    let mut team = Team { members: members.collect(), job };
+    let Some(law) = team.members.first().map(|member| member.law) else { return };
+    law.abreast(&mut team);
+}
+
+impl<S: Scalar, L: FrictionLaw<S>> SideBySide<S, L> for &mut Team<'_, S, L> {
+    type Output = ();
+
+    #[inline(never)]
+    fn with<C: Contacts<S, L>>(self) {
+        self.walk::<C>();
     }
 }
 

@@ -3,8 +3,9 @@
 use stiction_dispatch::Vector;
 
 use super::{Coulomb, CoulombState};
-use crate::batch::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
+use crate::friction::elements::abreast::{Block, Bodies, Contacts, Rest};
 use crate::friction::elements::bell::Bells;
+use crate::math::row::{Row, WIDTH};
 use crate::math::scalar::{Scalar, sign};
 
 /// Contacts of [`Coulomb`] whose level falls as a bell or not at all.

@@ -3,7 +3,8 @@
 use stiction_dispatch::Vector;
 
 use super::{Dahl, DahlState};
-use crate::batch::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
+use crate::friction::elements::abreast::{Block, Bodies, Contacts, Rest};
+use crate::math::row::{Row, WIDTH};
 use crate::math::scalar::{Scalar, sign};
 
 /// Contacts of [`Dahl`] whose curve is a quotient, i = 2.

@@ -1,7 +1,7 @@
 //! First-order following of a target that changes linearly.
 
-use crate::batch::lanes::pick;
 use crate::math::exponential::{faded, faded_of, faded_within};
+use crate::math::row::pick;
 use crate::math::scalar::Scalar;
 
 /// What [`follow`] returns.

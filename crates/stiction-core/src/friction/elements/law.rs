@@ -1,9 +1,9 @@
 //! The trait that every friction law fulfils.
 
+use super::abreast::SideBySide;
 use super::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
 use super::entry::Entry;
 use super::plain_steps::PlainSteps;
-use crate::batch::lanes::Abreast;
 use crate::math::scalar::Scalar;
 use crate::support::error::Result;
 use crate::support::parameter::{OptionSpec, ParameterSpec};
@@ -164,9 +164,9 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     fn springs(&self, _state: &Self::State) -> Option<f64> {
         None
     }
-    /// What takes motors with contacts like this one through their samples side by side; see
-    /// [`crate::batch::lanes`].
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
+    /// Tells who takes contacts like this one side by side in which form they run, where they have
+    /// one; see [`super::abreast`].
+    fn abreast<T: SideBySide<S, Self>>(&self, _team: T) -> Option<T::Output> {
         None
     }
     /// Accepts a step.

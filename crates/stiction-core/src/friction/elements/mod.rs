@@ -1,5 +1,6 @@
 //! What laws are made of: the trait that all of them fulfil, and blocks that several of them share.
 
+pub mod abreast;
 pub mod approach;
 pub mod arcsinh;
 pub mod bell;

@@ -1,7 +1,7 @@
 //! Slides and reversals of contacts that have no rigid stick: counted, without any say in the force.
 
-use crate::batch::lanes::{Row, pick};
 use crate::friction::{Entry, EntryReader, Statistics};
+use crate::math::row::{Row, pick};
 use crate::math::scalar::sign;
 use crate::support::error::Result;
 

@@ -8,6 +8,7 @@ mod softest;
 mod state;
 mod stick;
 
+use super::elements::abreast::SideBySide;
 use super::elements::loading::{Curve, Loading, VirginCurve};
 use super::elements::plastic::Plastic;
 use super::elements::reachable::reachable;
@@ -18,7 +19,6 @@ use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, PlainSteps, Rest,
     Statistics,
 };
-use crate::batch::lanes::{self, Abreast};
 use crate::math::scalar::{Scalar, sign};
 use crate::support::error::{Error, Result};
 use crate::support::parameter::{OptionSpec, ParameterSpec};
@@ -385,8 +385,8 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         (self.glides() && state.mode == 0.0).then(|| self.parameters.damping.re())
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     #[inline(always)]

@@ -1,7 +1,6 @@
 //! What defines a motor, in plain numbers.
 
-use crate::friction::Law;
-use crate::friction::LawSpec;
+use crate::friction::{Law, LawSpec};
 use crate::integrate::Integrator;
 use crate::math::scalar::Scalar;
 use crate::plant::Machine;
@@ -109,6 +108,38 @@ impl MotorSpec {
             list.extend(values.map(|(spec, v)| (format!("effects.{name}.{}", spec.name), *v)));
         }
         list
+    }
+
+    /// Refuses values, in the order of [`MotorSpec::parameters`], that this motor cannot have.
+    pub fn allows(&self, values: &[f64]) -> Result<()> {
+        let (body, rest) = values.split_at(5);
+        let (friction, mut rest) = rest.split_at(self.friction.values.len());
+        let stated: Vec<(String, f64)> = self
+            .friction
+            .record
+            .parameters
+            .iter()
+            .zip(friction)
+            .map(|(spec, value)| (spec.name.to_owned(), *value))
+            .collect();
+        LawSpec::new(self.friction.record.name, &stated, &[])?;
+        for effect in &self.effects {
+            let (own, left) = rest.split_at(effect.values.len());
+            rest = left;
+            let named = effect.record.parameters.iter().zip(own);
+            let stated: Vec<(String, f64)> =
+                named.map(|(spec, value)| (spec.name.to_owned(), *value)).collect();
+            EffectSpec::new(effect.record.name, &stated)?;
+        }
+        Self {
+            inertia: body[0],
+            gain: body[1],
+            gravity_amplitude: body[2],
+            gravity_zero: body[3],
+            weight: body[4],
+            ..self.clone()
+        }
+        .check()
     }
 
     /// Machine and law over some number type; `values` in the order of [`Self::parameters`].

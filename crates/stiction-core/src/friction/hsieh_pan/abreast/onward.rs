@@ -5,7 +5,7 @@ use stiction_dispatch::{CHUNKS, Mask, Vector};
 
 use super::stick::shortly;
 use super::{Found, Known, Lanes, Odds, accept};
-use crate::batch::lanes::{Block, Bodies};
+use crate::friction::elements::abreast::{Block, Bodies};
 use crate::friction::elements::branch::SYNCHRONISED;
 use crate::math::scalar::{SECOND_BELOW, SHORT};
 

@@ -5,7 +5,7 @@ use stiction_dispatch::{Mask, Vector};
 
 use super::onward::{line, second};
 use super::{Lanes, SLACK};
-use crate::batch::lanes::{Block, Bodies, Rest};
+use crate::friction::elements::abreast::{Block, Bodies, Rest};
 use crate::friction::elements::branch::SYNCHRONISED;
 use crate::math::exponential::faded;
 use crate::math::scalar::{SECOND, SHORT, SHORTER};

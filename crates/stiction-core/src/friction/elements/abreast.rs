@@ -1,79 +1,15 @@
-//! A row of bodies and of contacts, in the form in which they run.
+//! A row of bodies and of contacts, in the form in which they run side by side.
+//!
+//! A law that has such a form ([`FrictionLaw::abreast`]) keeps what runs from step to step of
+//! [`WIDTH`] contacts in rows and takes a step of all of them without a choice: [`Contacts`]. Who runs
+//! the rows is none of its business.
 
 use stiction_dispatch::{Mask, Vector};
 
-use crate::friction::FrictionLaw;
-use crate::integrate::after_steps;
+use super::law::FrictionLaw;
+use crate::math::row::{Row, WIDTH, bits};
 use crate::math::scalar::Scalar;
 use crate::math::verlet::Verlet;
-use crate::plant::Run;
-
-/// Lanes of a block: one vector of the widest processors, two or four of others.
-pub const WIDTH: usize = stiction_dispatch::ROW;
-
-/// One number where `taken`, else the other.
-///
-/// By bits: a choice would become a load from either place, or a store under a mask, on which the
-/// next load has to wait.
-#[inline(always)]
-pub fn pick(taken: bool, new: f64, old: f64) -> f64 {
-    let mask = u64::from(taken).wrapping_neg();
-    f64::from_bits((new.to_bits() & mask) | (old.to_bits() & !mask))
-}
-
-/// One number for each lane.
-#[derive(Debug, Clone, Copy, Default)]
-#[repr(align(64))]
-pub struct Row(pub [f64; WIDTH]);
-
-impl Row {
-    /// 0 in each lane.
-    pub const ZERO: Self = Self([0.0; WIDTH]);
-
-    /// Replaces the number of a lane where `taken`.
-    #[inline(always)]
-    pub fn take(&mut self, lane: usize, taken: bool, new: f64) {
-        self.0[lane] = pick(taken, new, self.0[lane]);
-    }
-
-    /// Some of its numbers.
-    #[inline(always)]
-    pub fn at<V: Vector>(&self, chunk: usize) -> V {
-        V::load(&self.0, chunk)
-    }
-
-    /// Replaces some of its numbers.
-    #[inline(always)]
-    pub fn put<V: Vector>(&mut self, chunk: usize, numbers: V) {
-        numbers.store(&mut self.0, chunk);
-    }
-
-    /// Adds to some of its numbers.
-    #[inline(always)]
-    pub fn more<V: Vector>(&mut self, chunk: usize, numbers: V) {
-        self.put(chunk, self.at::<V>(chunk) + numbers);
-    }
-
-    /// Replaces some of its numbers where something holds.
-    #[inline(always)]
-    pub fn put_where<V: Vector>(&mut self, chunk: usize, taken: V::Mask, numbers: V) {
-        self.put(chunk, self.at::<V>(chunk).or(taken, numbers));
-    }
-
-    /// Adds to some of its numbers where something holds.
-    #[inline(always)]
-    pub fn more_where<V: Vector>(&mut self, chunk: usize, taken: V::Mask, numbers: V) {
-        // −0 changes no number.
-        self.more(chunk, V::all(-0.0).or(taken, numbers));
-    }
-
-    /// Adds to the number of a lane where `taken`.
-    #[inline(always)]
-    pub fn add(&mut self, lane: usize, taken: bool, more: f64) {
-        // −0 changes no number: a sum for all is written whole, and the next load need not wait.
-        self.0[lane] += pick(taken, more, -0.0);
-    }
-}
 
 /// The bodies of a block and their share of a step, see [`Verlet`].
 #[derive(Debug, Clone)]
@@ -92,8 +28,8 @@ pub struct Bodies {
     pub path: Row,
     /// Time at some step of the row, and which: all lanes take each, and the clock of a lane is
     /// looked at seldom.
-    time: Row,
-    since: [usize; WIDTH],
+    pub(crate) time: Row,
+    pub(crate) since: [usize; WIDTH],
     /// Steps that the row has taken.
     pub taken: usize,
     /// Duration of a step.
@@ -148,29 +84,6 @@ impl Bodies {
         self.pace.0[lane] = pace;
         self.lever.0[lane] = lever;
         self.present |= 1 << lane;
-    }
-
-    /// Takes a body into a lane.
-    #[inline]
-    pub fn load<S: Scalar>(&mut self, lane: usize, run: &Run<S>) {
-        self.position.0[lane] = run.position.re();
-        self.velocity.0[lane] = run.velocity.re();
-        self.friction.0[lane] = run.friction.re();
-        self.path.0[lane] = run.path.re();
-        self.time.0[lane] = run.time.re();
-        self.since[lane] = self.taken;
-    }
-
-    /// Puts the body of a lane back, where it was after so many steps of the row.
-    #[inline]
-    pub fn store<S: Scalar>(&self, lane: usize, taken: usize, run: &mut Run<S>) {
-        let steps = taken - self.since[lane];
-        let time = after_steps(self.time.0[lane], self.span.0[lane], steps);
-        run.position = S::constant(self.position.0[lane]);
-        run.velocity = S::constant(self.velocity.0[lane]);
-        run.friction = S::constant(self.friction.0[lane]);
-        run.path = S::constant(self.path.0[lane]);
-        run.time = S::constant(time);
     }
 
     /// A bit for each lane of these that is there and where something does not hold, at its place in
@@ -273,20 +186,6 @@ pub struct Rest {
     pub changed: u8,
 }
 
-/// A bit for each lane that is not 0.
-pub fn bits(lanes: &[u64; WIDTH]) -> u8 {
-    (0..WIDTH).fold(0, |bits, lane| bits | u8::from(lanes[lane] != 0) << lane)
-}
-
-/// The lanes of these bits.
-pub fn lanes(mut bits: u8) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = bits.trailing_zeros() as usize;
-        bits &= bits.wrapping_sub(1);
-        (lane < WIDTH).then_some(lane)
-    })
-}
-
 /// A body's share of steps against one damping, see [`Verlet`].
 #[derive(Debug, Clone, Copy)]
 pub struct Dragged {
@@ -331,4 +230,22 @@ pub struct Block<C> {
     pub bodies: Bodies,
     /// Their contacts.
     pub contacts: C,
+}
+
+/// What takes contacts of a law side by side, once the law has told in which form they run.
+pub trait SideBySide<S: Scalar, L: FrictionLaw<S>> {
+    /// What comes of it.
+    type Output;
+    /// Takes contacts in this form.
+    fn with<C: Contacts<S, L>>(self) -> Self::Output;
+}
+
+/// Asks for no more than whether there is such a form.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked;
+
+impl<S: Scalar, L: FrictionLaw<S>> SideBySide<S, L> for Asked {
+    type Output = ();
+
+    fn with<C: Contacts<S, L>>(self) {}
 }
