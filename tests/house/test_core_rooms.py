@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-CORE = Path(__file__).parents[2] / "crates" / "stiction-core" / "src"
+import pytest
+
+from .core_copy import REPOSITORY, Copy
+
+CORE = REPOSITORY / "crates" / "stiction-core" / "src"
 ROOMS = (
     "math",
     "support",
@@ -65,3 +70,15 @@ def test_every_path_to_another_room_begins_at_the_root() -> None:
         deepest = depth + bool(re.search(r"^\s*(pub(\(\w+\))? )?mod \w+ \{", text, re.M))
         for way in re.findall(r"\b((?:super::)+)", text):
             assert way.count("super") < deepest, f"{path} leaves its room by {way}"
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("cargo") is None, reason="cargo is not installed")
+def test_each_room_compiles_without_those_above_it(tmp_path: Path) -> None:
+    copy = Copy(tmp_path)
+    # Also a method that a room above gives to a type below is one that nothing below may call.
+    for above in range(1, len(ROOMS)):
+        rooms = "".join(f"#[macro_use]\npub mod {room};\n" for room in ROOMS[:above])
+        (copy.source / "lib.rs").write_text(f"#![allow(warnings)]\n{rooms}", "utf-8")
+        done = copy.cargo("check", "--quiet", "-p", "stiction-core", "--lib")
+        assert done.returncode == 0, f"{ROOMS[above - 1]} alone: {done.stderr[:3000]}"

@@ -12,8 +12,7 @@ use super::row::{Rows, Taken};
 use super::swing::{Landing, Swing, located};
 use crate::friction::{FrictionLaw, LawState, Motion};
 use crate::math::scalar::sign;
-use crate::plant::Work;
-use crate::plant::{Machine, Run};
+use crate::plant::{Machine, Run, Work};
 use crate::support::error::Error;
 use crate::support::work::{IN_A_ROW, Meter, STEP};
 

@@ -5,16 +5,16 @@
 //! goes through those in one loop that keeps what runs from step to step in registers, and leaves
 //! the first step that is not plain to the others. The equations are the same, to the bit.
 
+use std::ops::Range;
+
 use stiction_dispatch::Task;
 
 use super::clock::after_steps;
 use super::response::{Response, halves};
-use crate::plant::Run;
-use std::ops::Range;
-
 use crate::friction::{Channels, FrictionLaw, PlainSteps};
 use crate::math::scalar::Scalar;
 use crate::math::verlet::Verlet;
+use crate::plant::Run;
 
 /// (ω·h)² below which a step is not fitted to a spring.
 const SOFTEST: f64 = 1e-6;

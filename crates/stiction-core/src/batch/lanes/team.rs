@@ -216,6 +216,7 @@ fn kind_of<L>(_: &L) -> PhantomData<L> {
     PhantomData
 }
 
+/// The same for motors whose law is known.
 fn take<L: Catalogued<f64>>(_: PhantomData<L>, job: &Job<'_>, motors: Vec<Motor<'_>>) {
     let members = motors.into_iter().map(|Motor { number, running, own }| {
         let pieces = running.division(job.dt).pieces;

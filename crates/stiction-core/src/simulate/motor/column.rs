@@ -3,8 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::friction::LawSpec;
-use crate::friction::LawState;
+use crate::friction::{LawSpec, LawState};
 use crate::integrate::{Places, Seen};
 use crate::math::scalar::Scalar;
 use crate::plant::naming::{COLUMNS, of_the_law, qualified};
