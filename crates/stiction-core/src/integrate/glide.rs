@@ -292,7 +292,9 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E
 
     #[inline(always)]
     fn next(&self) -> Option<S> {
-        (self.samples.start < self.samples.end).then(|| self.here(self.samples.start))
+        // No closure, which compilers may make a call of: derivatives would go through memory.
+        let Range { start, end } = self.samples;
+        if start < end { Some(self.here(start)) } else { None }
     }
 
     #[inline(always)]
