@@ -10,7 +10,7 @@ from typing import Final
 __all__ = ["Comment", "comment_of", "escaped"]
 
 CORE: Final = Path(__file__).parents[2] / "crates" / "stiction-core" / "src"
-FOLDERS: Final = {"law": "friction", "effect": "effects"}
+FOLDERS: Final = {"law": "friction", "effect": "plant/effects"}
 COMMENT: Final = re.compile(r"(?:^[ \t]*///.*\n)+", re.M)
 FORMULA: Final = re.compile(r"(?:\w+: )?\S{1,9} [=≤] ")
 """How a paragraph begins that is set as it stands, line by line."""

@@ -16,7 +16,7 @@ import pytest
 import stiction as st
 from stiction import _native
 
-SOURCE = Path(__file__).parents[2] / "crates" / "stiction-core" / "src" / "error.rs"
+SOURCE = Path(__file__).parents[2] / "crates" / "stiction-core" / "src" / "support" / "error.rs"
 DT = 1e-3
 VARIANT = re.compile(r'#\[error\(\s*"((?:[^"\\]|\\.|\\\n)*)".*?\)\]\s*(\w+)', re.DOTALL)
 

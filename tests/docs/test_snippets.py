@@ -156,7 +156,10 @@ CORE = REPOSITORY / "crates" / "stiction-core" / "src"
 
 @pytest.mark.parametrize(
     ("page", "folder", "trait"),
-    [("adding-a-law.md", "friction", "FrictionLaw"), ("adding-an-effect.md", "effects", "Effect")],
+    [
+        ("adding-a-law.md", "friction", "FrictionLaw"),
+        ("adding-an-effect.md", "plant/effects", "Effect"),
+    ],
 )
 def test_quoted_rust_implements_the_trait_as_it_is(page: str, folder: str, trait: str) -> None:
     source = "\n".join(file.read_text("utf-8") for file in sorted((CORE / folder).rglob("*.rs")))
@@ -176,8 +179,10 @@ def test_quoted_rust_implements_the_trait_as_it_is(page: str, folder: str, trait
     names = set(re.findall(members, written[0], re.M))
     assert names <= known
     assert needed <= names
-    for module in re.findall(r"^use crate::(\w+)", quoted, re.M):
-        assert (CORE / f"{module}.rs").exists() or module in ("parameters", "friction")
+    modules = re.findall(r"^use crate::(\w+)::(\w+)", quoted, re.M)
+    assert modules
+    for room, module in modules:
+        assert (CORE / room / f"{module}.rs").exists() or room == "friction"
 
 
 def test_catalogue_names_in_the_documentation_exist() -> None:

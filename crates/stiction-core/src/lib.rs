@@ -2,43 +2,38 @@
 //!
 //! Pure numerics: no input, no output, no unsafe code. Every model is written once over
 //! [`scalar::Scalar`], so that the same code yields values and derivatives.
+//!
+//! Eight rooms, each of which needs those above it in this list and none below:
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | [`math`] | numbers, plain and with derivatives, and functions of them |
+//! | [`support`] | errors, parameters, plain data, the bounds of a call |
+//! | [`friction`] | friction laws and what they are made of |
+//! | [`plant`] | drive, body, effects and sensor: all of a plant but its law |
+//! | [`integrate`] | how a plant and its law get from one sample to the next |
+//! | [`simulate`] | contacts and motors with their state |
+//! | [`inverse`] | from a motion back to what made it, and derivatives by parameters |
+//! | [`batch`] | ensembles, and motors side by side in the lanes of a vector |
+//!
+//! Inside the crate a path names the room; outside, modules are also found by their own names.
 
 #![forbid(unsafe_code)]
 
+pub mod math;
+pub mod support;
 #[macro_use]
 pub mod friction;
-
-pub mod body;
-pub mod drive;
-pub mod dual;
-pub mod effects;
-pub mod ensemble;
-pub mod error;
-pub mod exponential;
-pub mod finite;
-pub mod follow;
+pub mod batch;
 pub mod integrate;
-pub mod interrupt;
-pub mod kernel;
-pub mod lanes;
-pub mod least_squares;
-mod logarithm;
-pub mod model;
-pub mod motor;
-mod naming;
-pub mod parameter;
-mod range;
-pub mod scalar;
-pub mod segments;
-pub mod sensitivity;
-pub mod sensor;
-pub mod servo;
-pub mod shoot;
-pub mod signatures;
-pub mod smoothing;
-pub mod symbol;
-mod traces;
-mod track;
-pub mod trig;
-pub mod wave;
-pub mod work;
+pub mod inverse;
+pub mod plant;
+pub mod simulate;
+
+pub use batch::{ensemble, lanes};
+pub use friction::elements::symbol;
+pub use inverse::{follow, kernel, least_squares, sensitivity, shoot, signatures, smoothing};
+pub use math::{dual, exponential, scalar, trig, wave};
+pub use plant::{body, drive, effects, sensor, servo};
+pub use simulate::{model, motor, segments};
+pub use support::{error, finite, interrupt, motion, parameter, samples, work};

@@ -35,7 +35,7 @@ fn modules(folder: &str) -> BTreeSet<String> {
 #[test]
 fn every_file_in_the_folders_is_in_its_list() {
     assert_eq!(modules("friction"), LAWS.iter().map(|law| law.name.to_owned()).collect());
-    assert_eq!(modules("effects"), EFFECTS.iter().map(|e| e.name.to_owned()).collect());
+    assert_eq!(modules("plant/effects"), EFFECTS.iter().map(|e| e.name.to_owned()).collect());
 }
 
 #[test]

@@ -5,10 +5,10 @@ use super::elements::reachable::reachable;
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::Result;
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, logarithmic_mean, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, logarithmic_mean, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 /// Greatest step towards zero force, in shares of F_c; less where n is great.
 const STEP: f64 = 1.0 / 32.0;

@@ -4,11 +4,11 @@ use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, LawState, Motion, Outcome, Rest,
     Statistics,
 };
-use crate::error::{Error, Result};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
-use crate::work;
+use crate::support::error::{Error, Result};
+use crate::support::parameter::ParameterSpec;
+use crate::support::work;
 
 /// Bristles of [`Bristle`].
 pub const BRISTLES: usize = 20;
@@ -17,7 +17,7 @@ const SHARE: f64 = 1.0 / BRISTLES as f64;
 /// pass so many more that what scatters about the mean is a hundredth of the force in that step, and of
 /// either sign.
 const MOST_SITES: f64 = 8.0;
-/// Sites of which the sum takes as long as a step in a row, see [`crate::work`].
+/// Sites of which the sum takes as long as a step in a row, see [`crate::support::work`].
 const SITES_OF_A_STEP: f64 = 6.0;
 /// Breaks are counted as far as a float is a whole number.
 const MOST_BREAKS: f64 = 1e15;

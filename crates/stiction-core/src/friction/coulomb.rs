@@ -3,17 +3,17 @@
 mod abreast;
 mod plain;
 
+use super::elements::abreast::SideBySide;
 use super::elements::rigid::{Rigid, held};
 use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, PlainSteps,
+    Statistics,
 };
-use crate::error::Result;
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::lanes::{self, Abreast};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`Coulomb`].
@@ -210,16 +210,12 @@ impl<S: Scalar> FrictionLaw<S> for Coulomb<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, CoulombState<S>>>(
-        &self,
-        state: &mut CoulombState<S>,
-        glide: &mut Glide<S, E, V>,
-    ) {
+    fn glide<G: PlainSteps<S, CoulombState<S>>>(&self, state: &mut CoulombState<S>, glide: &mut G) {
         self.glide_on(state, glide);
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     #[inline]

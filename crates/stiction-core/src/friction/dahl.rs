@@ -2,16 +2,17 @@
 
 mod abreast;
 
+use super::elements::abreast::SideBySide;
+use super::elements::plain_steps::glide_on;
 use super::elements::reachable::reachable;
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, PlainSteps, Rest,
+    Statistics,
 };
-use crate::error::Result;
-use crate::integrate::{Efforts, Glide, Seen, glide_on};
-use crate::lanes::{self, Abreast};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, logarithmic_mean, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, logarithmic_mean, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`Dahl`].
@@ -243,16 +244,12 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, DahlState<S>>>(
-        &self,
-        state: &mut DahlState<S>,
-        glide: &mut Glide<S, E, V>,
-    ) {
+    fn glide<G: PlainSteps<S, DahlState<S>>>(&self, state: &mut DahlState<S>, glide: &mut G) {
         glide_on(self, state, glide);
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     // Where the body stays, so does the force.

@@ -1,12 +1,11 @@
 //! Dahl's curve on the reverse-point memory of the spring: loops that close.
 
 use super::maxwell_slip::{MaxwellSlip, MaxwellSlipState, MaxwellSlipTrial};
-use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
-use crate::error::Result;
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::parameter::ParameterSpec;
+use super::{Channels, Entry, FrictionLaw, Motion, Outcome, PlainSteps, Rest};
+use crate::math::scalar::Scalar;
 use crate::parameters;
-use crate::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`DahlWithMemory`].
@@ -136,10 +135,10 @@ impl<S: Scalar> FrictionLaw<S> for DahlWithMemory<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, MaxwellSlipState<S>>>(
+    fn glide<G: PlainSteps<S, MaxwellSlipState<S>>>(
         &self,
         state: &mut MaxwellSlipState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         self.0.glide(state, glide);
     }

@@ -4,11 +4,11 @@ use super::elements::approach::approach_bending;
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
 use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
-use crate::error::Result;
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
-use crate::work;
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
+use crate::support::work;
 
 /// Share of g by which it is moved for the slope of a held velocity.
 const NUDGE: f64 = 1e-6;

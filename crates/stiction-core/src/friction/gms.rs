@@ -7,10 +7,10 @@ use super::elements::stribeck::{SlidingLevel, check_levels};
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::{Error, Result};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::{Error, Result};
+use crate::support::parameter::ParameterSpec;
 
 /// Elements of [`Gms`].
 pub const ELEMENTS: usize = 8;

@@ -10,10 +10,10 @@ use super::elements::yield_curve::{GROUPS, YieldCurve};
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::Result;
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, logarithmic_mean, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, logarithmic_mean, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 /// Share of g by which it is moved for the slope of a held velocity.
 const NUDGE: f64 = 1e-6;

@@ -5,10 +5,10 @@ use super::elements::stribeck::{check_levels, fall, steepest};
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Statistics,
 };
-use crate::error::Result;
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`LoadDependent`].

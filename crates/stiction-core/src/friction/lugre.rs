@@ -2,16 +2,15 @@
 
 mod abreast;
 
+use super::elements::abreast::SideBySide;
 use super::elements::bristle::{self, Bent, Bristle, BristleState, BristleTrial, Slip};
 use super::elements::lag::{follow, follow_within};
 use super::elements::stribeck::{SlidingLevel, check_levels};
-use super::{Channels, Entry, FrictionLaw, Motion, Outcome, Rest};
-use crate::error::Result;
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::lanes::{self, Abreast};
-use crate::parameter::ParameterSpec;
+use super::{Channels, Entry, FrictionLaw, Motion, Outcome, PlainSteps, Rest};
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`LuGre`].
@@ -239,15 +238,11 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, BristleState<S>>>(
-        &self,
-        state: &mut BristleState<S>,
-        glide: &mut Glide<S, E, V>,
-    ) {
-        let (bristle, verlet) = (&self.0, glide.verlet);
-        let duration = glide.verlet.span();
+    fn glide<G: PlainSteps<S, BristleState<S>>>(&self, state: &mut BristleState<S>, glide: &mut G) {
+        let (bristle, verlet) = (&self.0, *glide.verlet());
+        let duration = glide.verlet().span();
         // g at the end of a step is that at the start of the next.
-        let (mut now, mut start_velocity) = (*state, glide.run.velocity);
+        let (mut now, mut start_velocity) = (*state, glide.velocity());
         let mut from = self.level_within(start_velocity);
         while let Some(effort) = glide.next() {
             let slip = Self::slip(bristle.stiffness * now.deflection, start_velocity, &from);
@@ -274,8 +269,8 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         *state = now;
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     // Where the body stays, so does the force.

@@ -5,13 +5,13 @@ mod plain;
 use super::elements::spring::{SpringState, Walk};
 use super::elements::yield_curve::YieldCurve;
 use super::{
-    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
+    Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, PlainSteps, Rest,
+    Statistics,
 };
-use crate::error::Result;
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::Scalar;
 use crate::parameters;
-use crate::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 /// What a plain step on a curve that is not exponential takes, see [`FrictionLaw::glide_cost`].
 const OF_ANY_CURVE: u64 = 2;
@@ -259,15 +259,15 @@ impl<S: Scalar> FrictionLaw<S> for MaxwellSlip<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, MaxwellSlipState<S>>>(
+    fn glide<G: PlainSteps<S, MaxwellSlipState<S>>>(
         &self,
         state: &mut MaxwellSlipState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         if self.curve.is_exponential() {
-            self.glide_on::<E, V, true>(state, glide);
+            self.glide_on::<G, true>(state, glide);
         } else {
-            self.glide_on::<E, V, false>(state, glide);
+            self.glide_on::<G, false>(state, glide);
         }
     }
 

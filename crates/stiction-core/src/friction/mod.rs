@@ -8,10 +8,14 @@ pub mod elements;
 pub use elements::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
 pub use elements::entry::{Entry, EntryReader};
 pub use elements::law::{FrictionLaw, INTERNAL, LawState};
+pub use elements::plain_steps::PlainSteps;
+pub use elements::spec::LawSpec;
 
-use crate::error::{Error, Result};
-use crate::parameter::{OptionSpec, ParameterSpec};
-use crate::scalar::Scalar;
+use elements::abreast::Asked;
+
+use crate::math::scalar::Scalar;
+use crate::support::error::{Error, Result};
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 /// A law as the catalogue knows it.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +40,17 @@ pub struct LawRecord {
     pub options: &'static [OptionSpec],
     /// States that a trajectory can show.
     pub outputs: &'static [&'static str],
+}
+
+/// A law as one of the catalogue.
+pub trait Catalogued<S: Scalar>: FrictionLaw<S> {
+    /// This law and its state, where any law and its state are.
+    fn among<'a>(
+        law: &'a Law<S>,
+        state: &'a mut AnyState<S>,
+    ) -> Option<(&'a Self, &'a mut Self::State)>;
+    /// A step of this law, as one of any.
+    fn any(trial: Self::Trial) -> AnyTrial<S>;
 }
 
 macro_rules! laws {
@@ -111,32 +126,26 @@ macro_rules! laws {
         impl Law<f64> {
             /// Whether motors with contacts like this one go through their samples side by side.
             pub fn goes_abreast(&self) -> bool {
-                match self { $(Self::$law(law) => law.abreast().is_some(),)* }
-            }
-
-            /// Takes motors with contacts of one kind that go abreast through their samples.
-            pub fn take_abreast(job: &$crate::lanes::Job<'_>, motors: Vec<$crate::lanes::Motor<'_>>) {
-                let Some(first) = motors.first() else { return };
-                match &first.running.law {
-                    $(Self::$law(law) => {
-                        let Some(walk) = law.abreast() else { return };
-                        let members = motors.into_iter().filter_map(|motor| {
-                            let (number, own) = (motor.number, motor.own);
-                            let pieces = motor.running.division(job.dt).pieces;
-                            let $crate::motor::Running { machine, law, state, run, .. } = motor.running;
-                            match (&*law, state) {
-                                (Self::$law(law), AnyState::$law(state)) => {
-                                    Some($crate::lanes::Member { number, machine, law, state, run, pieces, own })
-                                }
-                                #[allow(unreachable_patterns)] // a catalogue of one law has no other
-                                _ => unreachable!("motors of an ensemble have one law"),
-                            }
-                        });
-                        walk(&mut $crate::lanes::Team { members: members.collect(), job });
-                    })*
-                }
+                match self { $(Self::$law(law) => law.abreast(Asked).is_some(),)* }
             }
         }
+
+        $(impl<S: Scalar> Catalogued<S> for $module::$law<S> {
+            fn among<'a>(
+                law: &'a Law<S>,
+                state: &'a mut AnyState<S>,
+            ) -> Option<(&'a Self, &'a mut Self::State)> {
+                match (law, state) {
+                    (Law::$law(law), AnyState::$law(state)) => Some((law, state)),
+                    #[allow(unreachable_patterns)] // a catalogue of one law has no other
+                    _ => None,
+                }
+            }
+
+            fn any(trial: Self::Trial) -> AnyTrial<S> {
+                AnyTrial::$law(trial)
+            }
+        })*
 
         impl<S: Scalar> AnyState<S> {
             /// The same state over another number type, with no parameter dependence.
@@ -174,23 +183,6 @@ macro_rules! laws {
         }
 
         impl<S: Scalar> Law<S> {
-            /// A step at a held velocity, where no contact mode changes in it.
-            pub fn quiet_step<const CREEPS: bool>(
-                &self,
-                state: &AnyState<S>,
-                held: &$crate::integrate::Held<S, CREEPS>,
-                span: S,
-            ) -> Option<(AnyTrial<S>, Outcome<S>)> {
-                match (self, state) {
-                    $((Self::$law(law), AnyState::$law(state)) => {
-                        $crate::integrate::quiet(held, law, state, span)
-                            .map(|trial| (AnyTrial::$law(trial), law.outcome(&trial)))
-                    })*
-                    #[allow(unreachable_patterns)] // a catalogue of one law has no other
-                    _ => unreachable!("a state is only ever made by its own law"),
-                }
-            }
-
             /// Accepts a step of this law.
             pub fn commit(&self, state: &mut AnyState<S>, trial: &AnyTrial<S>) {
                 match (self, state, trial) {

@@ -3,10 +3,10 @@
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::{Error, Result};
-use crate::parameter::{OptionSpec, ParameterSpec};
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::{Error, Result};
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 /// Elements of [`ParallelElements`].
 pub const ELEMENTS: usize = 4;

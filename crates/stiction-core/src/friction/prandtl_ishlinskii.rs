@@ -4,10 +4,10 @@ use super::elements::stop::Stop;
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::{Error, Result};
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::Scalar;
 use crate::parameters;
-use crate::scalar::Scalar;
+use crate::support::error::{Error, Result};
+use crate::support::parameter::ParameterSpec;
 
 /// Operators of [`PrandtlIshlinskii`].
 pub const OPERATORS: usize = 10;

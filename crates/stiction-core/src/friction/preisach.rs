@@ -6,10 +6,10 @@ use super::elements::spring::{SpringState, Walk};
 use super::{
     Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Rest, Statistics,
 };
-use crate::error::Result;
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`Preisach`].

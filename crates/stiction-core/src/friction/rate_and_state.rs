@@ -4,10 +4,10 @@ use super::elements::arcsinh::{Balance, Series, arcsinh_of_exp};
 use super::{
     Arrival, Channels, Entry, EntryReader, FrictionLaw, LawState, Motion, Outcome, Push, Statistics,
 };
-use crate::error::Result;
-use crate::parameter::{OptionSpec, ParameterSpec};
+use crate::math::scalar::{Scalar, sign};
 use crate::parameters;
-use crate::scalar::{Scalar, sign};
+use crate::support::error::Result;
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 parameters! {
     /// Parameters of [`RateAndState`].

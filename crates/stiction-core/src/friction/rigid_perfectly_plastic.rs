@@ -5,10 +5,10 @@ use super::elements::slip_hardening::SlipHardening;
 use super::{
     Channels, Entry, EntryReader, Event, FrictionLaw, LawState, Motion, Outcome, Statistics,
 };
-use crate::error::Result;
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::Scalar;
 use crate::parameters;
-use crate::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`RigidPerfectlyPlastic`].

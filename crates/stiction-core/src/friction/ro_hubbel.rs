@@ -2,10 +2,10 @@
 
 use super::elements::bond::{Bond, BondTrial, DampedBond};
 use super::{Channels, Entry, EntryReader, Event, FrictionLaw, Motion, Outcome};
-use crate::error::Result;
-use crate::parameter::ParameterSpec;
+use crate::math::scalar::Scalar;
 use crate::parameters;
-use crate::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::ParameterSpec;
 
 parameters! {
     /// Parameters of [`RoHubbel`].

@@ -7,15 +7,14 @@
 
 use std::cell::Cell;
 
-use super::budget::Work;
 use super::events::Stepper;
-use super::machine::{Machine, Run};
 use super::row::{Rows, Taken};
 use super::swing::{Landing, Swing, located};
-use crate::error::Error;
 use crate::friction::{FrictionLaw, LawState, Motion};
-use crate::scalar::sign;
-use crate::work::{IN_A_ROW, Meter, STEP};
+use crate::math::scalar::sign;
+use crate::plant::{Machine, Run, Work};
+use crate::support::error::Error;
+use crate::support::work::{IN_A_ROW, Meter, STEP};
 
 /// Share of the tolerance that a step may add to the error, by an estimate of one order less.
 const LOCAL: f64 = 0.05;

@@ -2,7 +2,7 @@
 
 use super::events::{Stepper, pass_events};
 use crate::friction::{Channels, FrictionLaw, Motion, Outcome};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// A contact that is moved at a held velocity: what `FrictionModel.step` does. `CREEPS` where something
 /// gives way in series with it.

@@ -1,9 +1,9 @@
 //! The loop that every step goes through, and the location of events inside it.
 
 use super::contact::Held;
-use crate::friction::{Event, FrictionLaw, Motion};
-use crate::scalar::Scalar;
-use crate::work;
+use crate::friction::{AnyState, AnyTrial, Catalogued, Event, FrictionLaw, Law, Motion, Outcome};
+use crate::math::scalar::Scalar;
+use crate::support::work;
 
 /// Mode changes allowed within one step before the rest is taken in the present mode: a guard
 /// against chatter at a degenerate set of parameters, never reached by a sane one.
@@ -13,7 +13,7 @@ const MOST_EVENTS: u32 = 16;
 pub trait Stepper<S: Scalar, L: FrictionLaw<S>> {
     /// An attempted step.
     type Attempt: Copy;
-    /// What one costs, see [`crate::work`].
+    /// What one costs, see [`crate::support::work`].
     const COST: u64 = work::STEP;
 
     /// Attempts a step of this duration in the present contact mode.
@@ -56,16 +56,7 @@ pub fn through_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     pass_events(stepper, law, state, span);
 }
 
-/// The velocity that an attempt which began with `before` shows to what acts by speed. A rigid contact stops a
-/// body where its velocity would turn round: what lies beyond is cut off, and drag there, of an overshoot of
-/// any size, must not lead back to where it seems that nothing happened.
-#[inline(always)]
-pub(crate) fn not_beyond_a_stop<S: Scalar, L: FrictionLaw<S>>(before: S, velocity: S) -> S {
-    let turned = L::RIGID && before.re() * velocity.re() < 0.0;
-    if turned { S::constant(0.0) } else { velocity }
-}
-
-/// The same where a mode is likely to change, so that nothing is attempted before that is looked for.
+/// [`through_events`] where a mode is likely to change, so that nothing is attempted before that is looked for.
 #[inline]
 pub(super) fn through_likely_events<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
     stepper: &mut P,
@@ -153,6 +144,24 @@ pub fn quiet<S: Scalar, L: FrictionLaw<S>, const CREEPS: bool>(
     }
     let (trial, motion) = Stepper::<S, L>::attempt(held, law, state, span);
     law.event(state, &trial, &motion).is_none().then_some(trial)
+}
+
+impl<S: Scalar> Law<S> {
+    /// A step at a held velocity, where no contact mode changes in it.
+    pub fn quiet_step<const CREEPS: bool>(
+        &self,
+        state: &AnyState<S>,
+        held: &Held<S, CREEPS>,
+        span: S,
+    ) -> Option<(AnyTrial<S>, Outcome<S>)> {
+        with_law_and_state!(self, state, |law, state| quiet(held, law, state, span)
+            .map(|trial| (any(law, trial), law.outcome(&trial))))
+    }
+}
+
+/// A step of a law, as one of any.
+fn any<S: Scalar, L: Catalogued<S>>(_: &L, trial: L::Trial) -> AnyTrial<S> {
+    L::any(trial)
 }
 
 /// The first event within an attempt of this duration, when, and the attempt up to there.
@@ -258,7 +267,7 @@ fn locate<S: Scalar>(span: S, beyond: f64, mut margin: impl FnMut(S) -> S) -> S 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Dual;
+    use crate::math::scalar::Dual;
 
     #[test]
     fn an_event_is_located_with_the_derivative_of_its_time() {

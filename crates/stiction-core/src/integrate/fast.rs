@@ -1,12 +1,14 @@
 //! Velocity Verlet with trapezoidal damping: one evaluation of friction a step.
 
-use super::events::{Stepper, not_beyond_a_stop};
-use super::glide::Verlet;
-use super::machine::{Machine, Run, hold};
+use super::events::Stepper;
+use super::plain::hold;
 use super::{Integrator, steep};
-use crate::effects::Situation;
+use crate::friction::elements::plain_steps::not_beyond_a_stop;
 use crate::friction::{Channels, FrictionLaw, Motion};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
+use crate::math::verlet::Verlet;
+use crate::plant::effects::Situation;
+use crate::plant::{Machine, Run};
 
 /// The fast integrator over one sample.
 ///

@@ -5,122 +5,19 @@
 //! goes through those in one loop that keeps what runs from step to step in registers, and leaves
 //! the first step that is not plain to the others. The equations are the same, to the bit.
 
+use std::ops::Range;
+
 use stiction_dispatch::Task;
 
 use super::clock::after_steps;
-use super::machine::Run;
 use super::response::{Response, halves};
-use std::ops::Range;
-
-use crate::friction::{Channels, FrictionLaw, Motion};
-use crate::scalar::Scalar;
+use crate::friction::{Channels, FrictionLaw, PlainSteps};
+use crate::math::scalar::Scalar;
+use crate::math::verlet::Verlet;
+use crate::plant::Run;
 
 /// (ω·h)² below which a step is not fitted to a spring.
 const SOFTEST: f64 = 1e-6;
-
-/// The body's share of a step: velocity Verlet with trapezoidal damping.
-#[derive(Debug, Clone, Copy)]
-pub struct Verlet<S> {
-    span: S,
-    half: S,
-    inertia: S,
-    /// Velocity and displacement per effort.
-    pace: S,
-    lever: S,
-    /// Displacement per velocity, and what is left of the inertia: less what damping at the start
-    /// takes off.
-    stride: S,
-    kept: S,
-    /// Whether derivatives of the duration are carried along.
-    located: bool,
-}
-
-impl<S: Scalar> Verlet<S> {
-    /// Steps of this duration.
-    #[inline(always)]
-    pub fn new(span: S, inertia: S, lightness: S) -> Self {
-        let half = span * 0.5;
-        let pace = span * lightness;
-        let located = S::CARRIES && span.derivative_is_nonzero();
-        Self { span, half, inertia, pace, lever: pace * half, stride: span, kept: inertia, located }
-    }
-
-    /// Steps of which friction at the start has a share damping·velocity, which no effort below
-    /// contains then. So nothing has to wait for it.
-    #[inline(always)]
-    pub fn dragged(self, damping: S) -> Self {
-        Self {
-            stride: self.stride - self.lever * damping,
-            kept: self.kept - self.half * damping,
-            ..self
-        }
-    }
-
-    /// Displacement over the step.
-    #[inline(always)]
-    pub fn displacement(&self, velocity: S, net: S) -> S {
-        self.stride * velocity + self.lever * net
-    }
-
-    /// Velocity predicted for the end of the step, `net` with all friction at the start.
-    #[inline(always)]
-    pub fn predicted(&self, velocity: S, net: S) -> S {
-        (velocity + self.pace * net).alone()
-    }
-
-    /// Velocity at the end: `both` efforts, less friction at the start alone, and that at the end
-    /// as what its damping leaves and that.
-    ///
-    /// (J·v₀ + h/2·(E₀ − F₀ + E₁ − F* + D·v*))/(J + h/2·D), F* last: the rest waits for nothing.
-    #[inline(always)]
-    pub fn arrive(&self, velocity: S, both: S, damping: S, undamped: S) -> S {
-        let share = self.share(damping);
-        self.unbraked(velocity, both, share) - self.braking(share) * undamped
-    }
-
-    /// 1/(J + h/2·D).
-    #[inline(always)]
-    pub fn share(&self, damping: S) -> S {
-        S::constant(1.0) / (self.inertia + self.over_half(damping))
-    }
-
-    /// The velocity at the end without undamped friction there.
-    #[inline(always)]
-    pub fn unbraked(&self, velocity: S, both: S, share: S) -> S {
-        (self.kept * velocity + self.over_half(both)) * share
-    }
-
-    /// Times half the duration. That depends on no parameter but where an event is located.
-    #[inline(always)]
-    fn over_half(&self, number: S) -> S {
-        if S::CARRIES && !self.located { number * self.half.re() } else { number * self.half }
-    }
-
-    /// [`Self::share`] and [`Self::braking`] where nothing damps, in no one's eyes the same quotient: else
-    /// every step had a division.
-    #[inline(always)]
-    pub fn free(&self) -> (S, S) {
-        let share = self.share(S::constant(0.0)).alone();
-        (share, self.braking(share))
-    }
-
-    /// What a unit of undamped friction at the end takes off the velocity there.
-    #[inline(always)]
-    pub fn braking(&self, share: S) -> S {
-        self.over_half(share)
-    }
-
-    /// Duration of a step, half of it, inertia, velocity and displacement per effort, as plain numbers.
-    pub fn numbers(&self) -> [f64; 5] {
-        [self.span, self.half, self.inertia, self.pace, self.lever].map(Scalar::re)
-    }
-
-    /// Duration of a step.
-    #[inline(always)]
-    pub fn span(&self) -> S {
-        self.span
-    }
-}
 
 impl Verlet<f64> {
     /// The same, bent so that a body on a spring of this stiffness beside this damping would be taken
@@ -278,40 +175,6 @@ pub enum Stillness {
     Not,
 }
 
-/// Goes through all steps with a law that knows no events and asks for nothing but the motion: each
-/// of them is plain.
-#[inline(always)]
-pub fn glide_on<S, L, E, V>(law: &L, state: &mut L::State, glide: &mut Glide<S, E, V>)
-where
-    S: Scalar,
-    L: FrictionLaw<S, State: Copy>,
-    E: Efforts<S>,
-    V: Seen<S, L::State>,
-{
-    let duration = glide.verlet.span();
-    // Copies that nobody else sees stay in registers.
-    let (mut now, mut start_velocity) = (*state, glide.run.velocity);
-    while let Some(effort) = glide.next() {
-        let (held, drag) = law.friction(&now, start_velocity, &glide.channels());
-        let push = effort - held;
-        let (verlet, net) = match drag {
-            None => (glide.verlet, push),
-            Some(damping) => (glide.verlet.dragged(damping), push - damping * start_velocity),
-        };
-        let displacement = verlet.displacement(start_velocity, push);
-        let velocity = verlet.predicted(start_velocity, net);
-        let motion = Motion { displacement, duration, start_velocity, velocity };
-        let effort_then = glide.there(effort, displacement, || velocity);
-        let trial = law.advance(&now, &motion, &glide.channels_there());
-        let (outcome, undamped) = (law.outcome(&trial), law.undamped(&trial, velocity));
-        let arrived = verlet.arrive(start_velocity, push + effort_then, outcome.damping, undamped);
-        law.commit(&mut now, &trial);
-        let friction = undamped + outcome.damping * arrived;
-        start_velocity = glide.accept(displacement, arrived, friction, &now);
-    }
-    *state = now;
-}
-
 /// A row of plain steps.
 #[derive(Debug)]
 pub struct Glide<S, E, V> {
@@ -338,29 +201,11 @@ pub struct Glide<S, E, V> {
 }
 
 impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
-    /// All effort but friction at the start of the next step, where there is one.
-    #[inline(always)]
-    pub fn next(&self) -> Option<S> {
-        (self.samples.start < self.samples.end).then(|| self.here(self.samples.start))
-    }
-
     /// All effort but friction where the body is, in a sample.
     #[inline(always)]
     fn here(&self, sample: usize) -> S {
         let effort = self.efforts.at(sample);
         if E::HELD { effort } else { effort + self.run.ambient }
-    }
-
-    /// What reaches the contact at the start of the next step, but for its effort.
-    #[inline(always)]
-    pub fn channels(&self) -> Channels<S> {
-        Self::at_levels(self.levels)
-    }
-
-    /// The same at the end of the step that was asked of [`Self::there`].
-    #[inline(always)]
-    pub fn channels_there(&self) -> Channels<S> {
-        Self::at_levels(self.beside.levels)
     }
 
     #[inline(always)]
@@ -371,10 +216,99 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         Channels { level, viscous_level, ..Channels::default() }
     }
 
-    /// All effort but friction at the end of a step that began under `effort`, displaced the body so far and
-    /// shows this velocity at its end.
+    /// The same step by step, where levels change meanwhile.
+    #[inline(never)]
+    fn hold_each<T>(&mut self, greatest: S, contact: &T) -> Option<S>
+    where
+        V: Seen<S, T>,
+    {
+        let mut held = None;
+        while let Some(effort) = self.next() {
+            let holds = effort.re().abs() <= (greatest * self.levels.0).re();
+            if !holds {
+                break;
+            }
+            self.run.time += self.verlet.span;
+            self.run.friction = effort;
+            held = Some(effort);
+            self.part += 1;
+            if self.part == self.parts {
+                self.part = 0;
+                self.seen.see(self.samples.start, &self.run, contact);
+                self.samples.start += 1;
+            }
+            self.go_on(None);
+        }
+        held
+    }
+
+    /// What a step begins with after another one.
     #[inline(always)]
-    pub fn there(&mut self, effort: S, displacement: S, shown: impl FnOnce() -> S) -> S {
+    fn go_on(&mut self, arrived: Option<Acting<S>>) {
+        let Range { start, end } = self.samples;
+        if start < end {
+            self.levels = self.efforts.levels(start, &self.run, arrived.as_ref());
+            let effort = self.here(start).re();
+            let speed = self.run.velocity.re();
+            if self.part == 0 && !self.efforts.is_fine(speed, effort, self.levels) {
+                self.samples.end = start;
+            }
+        }
+    }
+}
+
+impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E, V> {
+    const HELD: bool = E::HELD;
+
+    #[inline(always)]
+    fn verlet(&self) -> &Verlet<S> {
+        &self.verlet
+    }
+
+    #[inline(always)]
+    fn velocity(&self) -> S {
+        self.run.velocity
+    }
+
+    #[inline(always)]
+    fn levels(&self) -> &(S, S) {
+        &self.levels
+    }
+
+    #[inline(always)]
+    fn levels_there(&self) -> &(S, S) {
+        &self.beside.levels
+    }
+
+    #[inline(always)]
+    fn looks(&self) -> bool {
+        self.seen.looks()
+    }
+
+    #[inline(always)]
+    fn pulled(&mut self, displacement: S, force: S) {
+        self.seen.pulled(displacement, force);
+    }
+
+    #[inline(always)]
+    fn next(&self) -> Option<S> {
+        // No closure, which compilers may make a call of: derivatives would go through memory.
+        let Range { start, end } = self.samples;
+        if start < end { Some(self.here(start)) } else { None }
+    }
+
+    #[inline(always)]
+    fn channels(&self) -> Channels<S> {
+        Self::at_levels(self.levels)
+    }
+
+    #[inline(always)]
+    fn channels_there(&self) -> Channels<S> {
+        Self::at_levels(self.beside.levels)
+    }
+
+    #[inline(always)]
+    fn there(&mut self, effort: S, displacement: S, shown: impl FnOnce() -> S) -> S {
         if E::HELD {
             return effort;
         }
@@ -385,13 +319,8 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         then
     }
 
-    /// Accepts samples at rest while the contact, which looks the same all the time, holds the effort, up to
-    /// one at level 1; friction at their end, where there are any.
     #[inline(always)]
-    pub fn hold<T>(&mut self, greatest: S, contact: &T) -> Option<S>
-    where
-        V: Seen<S, T>,
-    {
+    fn hold(&mut self, greatest: S, contact: &T) -> Option<S> {
         let mut most = greatest.re();
         if !E::HELD {
             most = (greatest * self.levels.0).re();
@@ -439,53 +368,8 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         Some(self.run.friction)
     }
 
-    /// The same step by step, where levels change meanwhile.
-    #[inline(never)]
-    fn hold_each<T>(&mut self, greatest: S, contact: &T) -> Option<S>
-    where
-        V: Seen<S, T>,
-    {
-        let mut held = None;
-        while let Some(effort) = self.next() {
-            let holds = effort.re().abs() <= (greatest * self.levels.0).re();
-            if !holds {
-                break;
-            }
-            self.run.time += self.verlet.span;
-            self.run.friction = effort;
-            held = Some(effort);
-            self.part += 1;
-            if self.part == self.parts {
-                self.part = 0;
-                self.seen.see(self.samples.start, &self.run, contact);
-                self.samples.start += 1;
-            }
-            self.go_on(None);
-        }
-        held
-    }
-
-    /// What a step begins with after another one.
-    #[inline(always)]
-    fn go_on(&mut self, arrived: Option<Acting<S>>) {
-        let Range { start, end } = self.samples;
-        if start < end {
-            self.levels = self.efforts.levels(start, &self.run, arrived.as_ref());
-            let effort = self.here(start).re();
-            let speed = self.run.velocity.re();
-            if self.part == 0 && !self.efforts.is_fine(speed, effort, self.levels) {
-                self.samples.end = start;
-            }
-        }
-    }
-
-    /// Accepts a step; the velocity to go on with, which is another one where the contact gave what it did
-    /// not have.
     #[inline(always)] // the body would leave its registers for a call
-    pub fn accept<T>(&mut self, displacement: S, velocity: S, friction: S, contact: &T) -> S
-    where
-        V: Seen<S, T>,
-    {
+    fn accept(&mut self, displacement: S, velocity: S, friction: S, contact: &T) -> S {
         let run = &mut self.run;
         let from = (run.position, run.velocity);
         run.position += displacement;

@@ -6,43 +6,32 @@
 //! all go through the same loop.
 
 mod adaptive;
-mod budget;
 mod clock;
 mod contact;
-mod contact_effects;
-mod ends;
 mod events;
 mod fast;
-mod gap;
 mod glide;
-mod machine;
-mod reach;
+mod plain;
 mod reference;
 mod response;
 mod row;
-mod shaft;
 mod steep;
 mod swing;
 
 pub use adaptive::{Account, Adaptive};
-pub use budget::Budget;
-use budget::Work;
 pub use clock::after_steps;
 pub use contact::{Along, Held};
-pub use contact_effects::{ContactEffects, Reach};
-pub(crate) use events::not_beyond_a_stop;
 use events::through_likely_events;
 pub use events::{Stepper, quiet, through_events};
-pub use glide::{Acting, Efforts, Glide, Places, Plain, Seen, Stillness, Verlet, glide_on};
-pub use machine::{Machine, Run};
-pub use shaft::Beyond;
+pub use glide::{Acting, Efforts, Glide, Places, Plain, Seen, Stillness};
 
 use std::ops::Range;
 
-use crate::error::{Error, Result};
 use crate::friction::FrictionLaw;
-use crate::scalar::Scalar;
-use crate::work::{self, Meter};
+use crate::math::scalar::Scalar;
+use crate::plant::{Machine, Run, Work};
+use crate::support::error::{Error, Result};
+use crate::support::work::{self, Meter};
 
 /// Which integrator advances the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -111,7 +100,7 @@ const STEEP: u64 = 10;
 const STEEP_REFERENCE: u64 = 80;
 
 impl Integrator {
-    /// What a step costs, see [`crate::work`].
+    /// What a step costs, see [`crate::support::work`].
     pub(crate) const fn of_step<S: Scalar>(self, steep: bool) -> u64 {
         let steps = match (self, steep) {
             (Self::Fast, false) => 1,
@@ -373,13 +362,14 @@ pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Body;
-    use crate::drive::Drive;
-    use crate::effects::Effects;
     use crate::friction::FrictionLaw;
     use crate::friction::coulomb::Coulomb;
     use crate::friction::elements::plastic::Plastic;
-    use crate::sensor::Sensor;
+    use crate::plant::Shaft;
+    use crate::plant::body::Body;
+    use crate::plant::drive::Drive;
+    use crate::plant::effects::Effects;
+    use crate::plant::sensor::Sensor;
 
     const INERTIA: f64 = 0.01;
 
@@ -432,13 +422,8 @@ mod tests {
         let (share, stiffness, input) = (0.4, 50.0, 0.2);
         let mut machine = machine();
         let inertia = INERTIA * share;
-        machine.shaft = Some(super::shaft::Shaft {
-            inertia,
-            stiffness,
-            damping: 0.0,
-            play: None,
-            load_damping: 0.0,
-        });
+        machine.shaft =
+            Some(Shaft { inertia, stiffness, damping: 0.0, play: None, load_damping: 0.0 });
         machine.inertia = INERTIA * (1.0 - share);
         machine.lightness = 1.0 / machine.inertia;
         let omega = (stiffness / (INERTIA * share * (1.0 - share))).sqrt();

@@ -1,12 +1,14 @@
 //! Runge-Kutta of fourth order on body and internal variables: the yardstick for the fast one.
 
-use super::events::{Stepper, not_beyond_a_stop};
+use super::events::Stepper;
 use super::fast::Attempt;
-use super::machine::{Machine, Run, hold};
+use super::plain::hold;
 use super::{Integrator, steep};
-use crate::effects::Situation;
+use crate::friction::elements::plain_steps::not_beyond_a_stop;
 use crate::friction::{FrictionLaw, INTERNAL, Motion};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::plant::effects::Situation;
+use crate::plant::{Machine, Run};
 
 /// The reference integrator over one sample.
 pub(super) struct Reference<'a, S: Scalar> {

@@ -8,10 +8,11 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use super::glide::{Acting, Efforts, Glide, Seen, Verlet};
-use super::machine::Run;
+use super::glide::{Acting, Efforts, Glide, Seen};
 use super::swing::Swing;
 use crate::friction::FrictionLaw;
+use crate::math::verlet::Verlet;
+use crate::plant::Run;
 
 /// Share of the tolerance that a ring may be off after a radian of its phase.
 const LOCAL: f64 = 0.01;

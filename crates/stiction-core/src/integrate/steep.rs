@@ -1,9 +1,9 @@
 //! Steps of a body on friction that rises too steeply from rest to be linearised.
 
 use super::fast::Attempt;
-use super::machine::{Machine, Run};
 use crate::friction::{FrictionLaw, Motion, Push};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
+use crate::plant::{Machine, Run};
 
 /// Parts of a step of the reference integrator.
 const FINER: u32 = 8;

@@ -3,11 +3,12 @@
 use std::cell::Cell;
 
 use super::events::{Stepper, earliest};
-use super::machine::{Machine, Run, hold};
+use super::plain::hold;
 use super::response::{halves, usable};
 use super::{fast, steep};
-use crate::effects::Situation;
 use crate::friction::{Channels, FrictionLaw, Motion};
+use crate::plant::effects::Situation;
+use crate::plant::{Machine, Run};
 
 /// Nothing brings a slide back: its errors add up.
 const SLIDING: f64 = 5.0;

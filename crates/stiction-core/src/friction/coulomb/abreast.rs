@@ -3,9 +3,10 @@
 use stiction_dispatch::Vector;
 
 use super::{Coulomb, CoulombState};
+use crate::friction::elements::abreast::{Block, Bodies, Contacts, Rest};
 use crate::friction::elements::bell::Bells;
-use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
-use crate::scalar::{Scalar, sign};
+use crate::math::row::{Row, WIDTH};
+use crate::math::scalar::{Scalar, sign};
 
 /// Contacts of [`Coulomb`] whose level falls as a bell or not at all.
 #[derive(Debug, Clone, Default)]

@@ -3,8 +3,9 @@
 use stiction_dispatch::Vector;
 
 use super::{Dahl, DahlState};
-use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
-use crate::scalar::{Scalar, sign};
+use crate::friction::elements::abreast::{Block, Bodies, Contacts, Rest};
+use crate::math::row::{Row, WIDTH};
+use crate::math::scalar::{Scalar, sign};
 
 /// Contacts of [`Dahl`] whose curve is a quotient, i = 2.
 #[derive(Debug, Clone, Default)]

@@ -1,6 +1,6 @@
 //! What is left on the way to a steady force, where no formula solves the way.
 
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Greatest change of ln r over a step at r = 1; the error of a step is of its fifth power.
 const STEP: f64 = 1.0 / 32.0;

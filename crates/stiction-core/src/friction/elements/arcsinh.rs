@@ -2,7 +2,7 @@
 //!
 //! F = d·z, v = 2·V·e^(−q)·sinh(z): linear in z where it is too steep to be written over v.
 
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
 
 /// Above this argument of [`arcsinh_of_exp`] the square root is its square to the last bit.
 const LARGE: f64 = 20.0;
@@ -198,7 +198,7 @@ fn late_share<S: Scalar>(x: S) -> S {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Dual;
+    use crate::math::scalar::Dual;
 
     #[test]
     fn arsinh_of_an_exponential_has_no_seam_and_no_end() {

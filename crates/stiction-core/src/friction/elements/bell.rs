@@ -1,7 +1,7 @@
 //! Levels that fall with speed as a bell does, side by side.
 
-use crate::exponential::fading;
-use crate::lanes::Row;
+use crate::math::exponential::fading;
+use crate::math::row::Row;
 
 /// F_c + (F_s − F_c)·e^(−(v/v_s)²), one in each lane: [`super::stribeck::SlidingLevel`] with δ = 2.
 #[derive(Debug, Clone, Default)]

@@ -1,8 +1,8 @@
 //! A spring that holds up to a stretch and is dragged along beyond: stick and slip by position.
 
-use crate::error::Result;
 use crate::friction::{Channels, Entry, EntryReader, Event, LawState, Motion, Outcome, Statistics};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::support::error::Result;
 
 /// Stretch of the spring, and whether it is dragged.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use stiction_dispatch::alone;
 
-use crate::scalar::{SECOND, SHORT, Scalar, gone_share};
+use crate::math::scalar::{SECOND, SHORT, Scalar, gone_share};
 
 /// Where a spring is, without its memory.
 #[derive(Debug, Clone, Copy)]

@@ -6,9 +6,9 @@
 use super::reachable::reachable;
 use super::slides::Slides;
 use super::stribeck::{SlidingLevel, fall};
-use crate::error::Result;
 use crate::friction::{Channels, Entry, EntryReader, LawState, Outcome, Statistics};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::support::error::Result;
 
 /// Stiffness, damping and steady friction of bristles.
 #[derive(Debug, Clone, Copy)]

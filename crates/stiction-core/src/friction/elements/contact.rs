@@ -1,7 +1,7 @@
 //! What a contact is told, what it answers, and what is counted of it.
 
 use super::law::FrictionLaw;
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// A displacement of the contact over a step.
 #[derive(Debug, Clone, Copy)]

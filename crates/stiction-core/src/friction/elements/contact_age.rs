@@ -3,7 +3,7 @@
 //! An anchor is dragged behind the body with a play of ± window. While it stands the contact rests,
 //! however the body rings inside the window; what it moves is distance slid.
 
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Moves the anchor after a displacement of the body and gives the distance slid; `offset` is that
 /// of the anchor from the body.

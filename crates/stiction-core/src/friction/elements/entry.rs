@@ -1,6 +1,6 @@
 //! Entries of a law's state, and how they are read back.
 
-use crate::error::{Error, Result};
+use crate::support::error::{Error, Result};
 
 /// One entry of a law's state, as users read and write it.
 #[derive(Debug, Clone, PartialEq)]

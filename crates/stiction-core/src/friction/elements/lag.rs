@@ -1,8 +1,8 @@
 //! First-order following of a target that changes linearly.
 
-use crate::exponential::{faded, faded_of, faded_within};
-use crate::lanes::pick;
-use crate::scalar::Scalar;
+use crate::math::exponential::{faded, faded_of, faded_within};
+use crate::math::row::pick;
+use crate::math::scalar::Scalar;
 
 /// What [`follow`] returns.
 #[derive(Debug, Clone, Copy)]

@@ -1,12 +1,12 @@
 //! The trait that every friction law fulfils.
 
+use super::abreast::SideBySide;
 use super::contact::{Arrival, Channels, Event, Motion, Outcome, Push, Rest, Statistics};
 use super::entry::Entry;
-use crate::error::Result;
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::lanes::Abreast;
-use crate::parameter::{OptionSpec, ParameterSpec};
-use crate::scalar::Scalar;
+use super::plain_steps::PlainSteps;
+use crate::math::scalar::Scalar;
+use crate::support::error::Result;
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 /// State of a law: owned by the caller, changed by `commit` and `switch` alone.
 pub trait LawState<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
@@ -149,7 +149,7 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
         false
     }
     /// What a step of [`FrictionLaw::glide`] takes, in steps in a row of a law with one exponential
-    /// ([`crate::work`]).
+    /// ([`crate::support::work`]).
     #[inline(always)]
     fn glide_cost(&self) -> u64 {
         1
@@ -158,20 +158,15 @@ pub trait FrictionLaw<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     /// nothing turns round and no mode changes, at level 1. The same to the bit as `advance` and
     /// `commit` step by step, in a loop that the law keeps short.
     #[inline]
-    fn glide<E: Efforts<S>, V: Seen<S, Self::State>>(
-        &self,
-        _state: &mut Self::State,
-        _glide: &mut Glide<S, E, V>,
-    ) {
-    }
+    fn glide<G: PlainSteps<S, Self::State>>(&self, _state: &mut Self::State, _glide: &mut G) {}
     /// The damping beside a spring where that is all that [`FrictionLaw::glide`] goes through from
     /// this state: long runs then take its steps longer.
     fn springs(&self, _state: &Self::State) -> Option<f64> {
         None
     }
-    /// What takes motors with contacts like this one through their samples side by side; see
-    /// [`crate::lanes`].
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
+    /// Tells who takes contacts like this one side by side in which form they run, where they have
+    /// one; see [`super::abreast`].
+    fn abreast<T: SideBySide<S, Self>>(&self, _team: T) -> Option<T::Output> {
         None
     }
     /// Accepts a step.

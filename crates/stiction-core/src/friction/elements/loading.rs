@@ -1,8 +1,8 @@
 //! Loading curves: the force of a spring over the distance from a reverse point.
 
 use super::branch::{Branch, Fading};
-use crate::exponential::faded_of;
-use crate::scalar::Scalar;
+use crate::math::exponential::faded_of;
+use crate::math::scalar::Scalar;
 
 /// The first loading curve, before any reversal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

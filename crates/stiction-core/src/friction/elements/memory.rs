@@ -1,6 +1,6 @@
 //! The list of reverse points: last in, first out.
 
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Points held at most: beside a motion that nests ever smaller loops without end, those that tell least
 /// are forgotten. A ring-down never comes near.

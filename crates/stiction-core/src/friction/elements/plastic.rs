@@ -4,8 +4,8 @@
 //! (Hsieh & Pan, Wear 242 (2000), §2.2.3 and §3.1: the behaviour is stated, the form of f is a
 //! reconstruction.)
 
-use crate::logarithm::logarithm;
-use crate::scalar::{COLUMNS, SHORTER, Scalar, logarithmic_mean, second_share, sign};
+use crate::math::logarithm::logarithm;
+use crate::math::scalar::{COLUMNS, SHORTER, Scalar, logarithmic_mean, second_share, sign};
 
 /// Parameters of the plastic module.
 #[derive(Debug, Clone, Copy)]
@@ -309,7 +309,7 @@ fn exponential_means<S: Scalar>(z: S) -> (S, S) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Dual;
+    use crate::math::scalar::Dual;
 
     const MODULE: Plastic<f64> = Plastic { coefficient: 1.6e-3, exponent: 2.0, rate: 2.0 };
 

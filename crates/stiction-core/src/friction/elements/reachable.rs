@@ -1,6 +1,6 @@
 //! Forces at the start that a contact can hold.
 
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Shares of the greatest force by which a start stays below it: where it begins to level off, and
 /// what it approaches. At the greatest force itself a curve may have no slope and no place.

@@ -1,8 +1,8 @@
 //! Stick and slip of a contact that is rigid until it breaks away.
 
-use crate::error::Result;
 use crate::friction::{Entry, EntryReader, Motion, Statistics};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::support::error::Result;
 
 /// Share of the velocity at the end of a step below which one at its start is what rounding left of a stop: an event is
 /// enclosed no closer.

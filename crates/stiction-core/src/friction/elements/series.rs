@@ -6,8 +6,8 @@ use super::loading::Loading;
 use super::plastic::{Creep, Plastic};
 use super::spring::{SpringState, Walk};
 use crate::friction::Motion;
-use crate::scalar::{Scalar, sign};
-use crate::work;
+use crate::math::scalar::{Scalar, sign};
+use crate::support::work;
 
 /// Passes to a root that come with a step; three powers each, those beyond cost as much as steps.
 const PASSES_OF_A_STEP: usize = 8;
@@ -181,7 +181,7 @@ pub fn instant<S: Scalar>(
 mod tests {
     use super::*;
     use crate::friction::elements::loading::{Curve, VirginCurve};
-    use crate::scalar::Dual;
+    use crate::math::scalar::Dual;
 
     fn moved<S: Scalar>(displacement: S, hardening: S, velocity: f64) -> S {
         let k = |value: f64| S::constant(value);

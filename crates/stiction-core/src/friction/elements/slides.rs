@@ -1,9 +1,9 @@
 //! Slides and reversals of contacts that have no rigid stick: counted, without any say in the force.
 
-use crate::error::Result;
 use crate::friction::{Entry, EntryReader, Statistics};
-use crate::lanes::{Row, pick};
-use crate::scalar::sign;
+use crate::math::row::{Row, pick};
+use crate::math::scalar::sign;
+use crate::support::error::Result;
 
 /// Share of F_c from which a contact counts as sliding.
 const SLIDES: f64 = 0.95;

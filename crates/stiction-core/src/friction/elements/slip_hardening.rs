@@ -1,6 +1,6 @@
 //! A sliding level that rises with the way slid, whatever its direction.
 
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Newton steps to the slip of an elastic overrun: one for each factor e between the rises of level
 /// and spring, and a few to the last digit.

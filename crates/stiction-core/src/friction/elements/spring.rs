@@ -8,9 +8,9 @@
 use super::branch::{Branch, Here, SYNCHRONISED};
 use super::loading::{Curve, Loading, Response, branch_inverse};
 use super::memory::{ReverseMemory, ReversePoint};
-use crate::error::{Error, Result};
 use crate::friction::{Entry, EntryReader, Statistics};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::support::error::{Error, Result};
 
 /// Elongation, force and memory of the spring.
 #[derive(Debug, Clone)]

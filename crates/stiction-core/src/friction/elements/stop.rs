@@ -1,6 +1,6 @@
 //! A stop: a linear spring behind a slider of constant level, by displacements.
 
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
 
 /// Round-off of a stretch that reached its limit, in shares of it.
 const REACHED: f64 = 1e-12;

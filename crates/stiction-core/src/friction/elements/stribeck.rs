@@ -1,8 +1,8 @@
 //! The fall of friction with speed that several laws share.
 
-use crate::error::{Error, Result};
-use crate::exponential::{fading_of, fading_within};
-use crate::scalar::Scalar;
+use crate::math::exponential::{fading_of, fading_within};
+use crate::math::scalar::Scalar;
+use crate::support::error::{Error, Result};
 
 /// e^(−|v/v_s|^δ) and its slope by speed |v|; the slope is taken as 0 at v = 0, where it is not
 /// defined for δ ≤ 1.

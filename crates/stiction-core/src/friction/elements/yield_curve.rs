@@ -4,8 +4,8 @@ use super::branch::{Branch, Fading, Here};
 use super::loading::{Loading, Response, masing};
 use super::reachable::reachable;
 use super::spring::SpringState;
-use crate::exponential::{faded_of, faded_within};
-use crate::scalar::{Scalar, logarithmic_mean};
+use crate::math::exponential::{faded_of, faded_within};
+use crate::math::scalar::{Scalar, logarithmic_mean};
 
 /// Edges of the groups of elements, in units of the mean yield displacement of the plain curve.
 const EDGES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.0];

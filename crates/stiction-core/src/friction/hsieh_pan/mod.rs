@@ -8,6 +8,7 @@ mod softest;
 mod state;
 mod stick;
 
+use super::elements::abreast::SideBySide;
 use super::elements::loading::{Curve, Loading, VirginCurve};
 use super::elements::plastic::Plastic;
 use super::elements::reachable::reachable;
@@ -15,13 +16,12 @@ use super::elements::series;
 use super::elements::spring::SpringState;
 use super::elements::stribeck::{check_levels, steepest};
 use super::{
-    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, Rest, Statistics,
+    Channels, Entry, EntryReader, Event, FrictionLaw, INTERNAL, Motion, Outcome, PlainSteps, Rest,
+    Statistics,
 };
-use crate::error::{Error, Result};
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::lanes::{self, Abreast};
-use crate::parameter::{OptionSpec, ParameterSpec};
-use crate::scalar::{Scalar, sign};
+use crate::math::scalar::{Scalar, sign};
+use crate::support::error::{Error, Result};
+use crate::support::parameter::{OptionSpec, ParameterSpec};
 
 use parameters::OPTIONS;
 pub use parameters::{HsiehPanParameters, HsiehPanStart};
@@ -373,10 +373,10 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
     }
 
     #[inline(always)]
-    fn glide<E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
+    fn glide<G: PlainSteps<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         self.glide_in_mode(state, glide);
     }
@@ -385,8 +385,8 @@ impl<S: Scalar> FrictionLaw<S> for HsiehPan<S> {
         (self.glides() && state.mode == 0.0).then(|| self.parameters.damping.re())
     }
 
-    fn abreast(&self) -> Option<Abreast<S, Self>> {
-        abreast::fits(self).then_some(lanes::by::<S, Self, abreast::Lanes>())
+    fn abreast<T: SideBySide<S, Self>>(&self, team: T) -> Option<T::Output> {
+        abreast::fits(self).then(|| team.with::<abreast::Lanes>())
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Parameters and options.
 
-use crate::parameter::OptionSpec;
 use crate::parameters;
+use crate::support::parameter::OptionSpec;
 
 /// 60 arc-seconds.
 const SIXTY_ARC_SECONDS: f64 = 2.908_882_086_657_216e-4;

@@ -4,11 +4,10 @@ use super::super::elements::branch::{Fading, Here};
 use super::super::elements::loading::{Curve, Loading};
 use super::super::elements::plastic::Creep;
 use super::super::elements::spring::SpringState;
-use super::super::{Motion, Outcome};
+use super::super::{Motion, Outcome, PlainSteps};
 use super::HsiehPan;
 use super::state::HsiehPanState;
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// The slope right after a reversal: rare, and a function so that nobody waits for the choice.
 #[cold]
@@ -62,40 +61,40 @@ impl<S: Scalar> Sticking<S> {
 impl<S: Scalar> HsiehPan<S> {
     /// Steps of a hook, whose damper sits beside the spring, in its present mode.
     #[inline(always)]
-    pub(super) fn glide_in_mode<E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
+    pub(super) fn glide_in_mode<G: PlainSteps<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         if state.mode != 0.0 {
             self.glide_sliding(state, glide);
         } else if self.plastic.is_square() {
-            self.glide_sticking::<true, _, _>(state, glide);
+            self.glide_sticking::<true, _>(state, glide);
         } else {
-            self.glide_sticking::<false, _, _>(state, glide);
+            self.glide_sticking::<false, _>(state, glide);
         }
     }
 
     /// Steps of a sticking hook until it breaks away.
     #[inline(always)]
-    fn glide_sticking<const SQUARE: bool, E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
+    fn glide_sticking<const SQUARE: bool, G: PlainSteps<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         let (curve, module) = (&self.curve, &self.plastic);
         let damping = self.parameters.damping;
         let greatest = self.parameters.breakaway.re();
-        let looks = glide.seen.looks();
-        let verlet = glide.verlet.dragged(damping);
+        let looks = glide.looks();
+        let verlet = glide.verlet().dragged(damping);
         let share = verlet.share(damping);
         let (pacing, braking) = (module.pacing(verlet.span()), verlet.braking(share));
         let Some(mut branch) = branch_of(curve, &state.spring) else { return };
         let mut now = Sticking::of(state);
-        let mut velocity = glide.run.velocity;
+        let mut velocity = glide.velocity();
         while let Some(effort) = glide.next() {
             let here = now.here;
-            let push = effort - Self::raised::<E>(here.force, glide.levels.0);
+            let push = effort - Self::raised::<G>(here.force, glide.levels().0);
             let displacement = verlet.displacement(velocity, push);
             let towards = |direction| {
                 if direction == here.direction { here.slope } else { after_reversal(curve) }
@@ -112,9 +111,9 @@ impl<S: Scalar> HsiehPan<S> {
             let unbraked = verlet.unbraked(velocity, push + effort_then, share);
             let plain = creep.and_then(|creep| Some((creep, here.onward(&branch, creep.left)?)));
             let arrived;
-            let level = glide.beside.levels.0;
+            let level = glide.levels_there().0;
             if let Some((creep, there)) = plain {
-                arrived = unbraked - braking * Self::raised::<E>(there.force, level);
+                arrived = unbraked - braking * Self::raised::<G>(there.force, level);
                 if breaks(there.force, greatest, arrived) {
                     break;
                 }
@@ -122,7 +121,7 @@ impl<S: Scalar> HsiehPan<S> {
             } else {
                 // A copy for the call: what it may look at could not stay in registers.
                 let begun = now.apart();
-                let level = if E::HELD { S::constant(1.0) } else { level };
+                let level = if G::HELD { S::constant(1.0) } else { level };
                 let rest = (unbraked, braking, level);
                 let apart = self.step_apart(state, &begun, displacement, verlet.span(), rest);
                 let Some(apart) = apart else { break };
@@ -131,8 +130,8 @@ impl<S: Scalar> HsiehPan<S> {
             if looks {
                 now.keep(state);
             }
-            glide.seen.pulled(displacement, now.here.force);
-            let friction = Self::raised::<E>(now.here.force, level) + damping * arrived;
+            glide.pulled(displacement, now.here.force);
+            let friction = Self::raised::<G>(now.here.force, level) + damping * arrived;
             velocity = glide.accept(displacement, arrived, friction, state);
         }
         now.apart().keep(state);
@@ -140,8 +139,8 @@ impl<S: Scalar> HsiehPan<S> {
 
     /// A force at a level, where there is one.
     #[inline(always)]
-    fn raised<E: Efforts<S>>(force: S, level: S) -> S {
-        if E::HELD { force } else { force * level }
+    fn raised<G: PlainSteps<S, HsiehPanState<S>>>(force: S, level: S) -> S {
+        if G::HELD { force } else { force * level }
     }
 
     /// A step in which creep sets in or ends, or the spring gets through its reverse points or is
@@ -176,23 +175,23 @@ impl<S: Scalar> HsiehPan<S> {
 
     /// Plain steps of a sliding hook.
     #[inline(always)]
-    fn glide_sliding<E: Efforts<S>, V: Seen<S, HsiehPanState<S>>>(
+    fn glide_sliding<G: PlainSteps<S, HsiehPanState<S>>>(
         &self,
         state: &mut HsiehPanState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         let (mode, latched) = (state.mode, state.latched);
         let least = self.parameters.slip_distance * self.parameters.final_stiffness;
         let greatest = self.parameters.breakaway.re();
-        let looks = glide.seen.looks();
-        let (verlet, duration) = (glide.verlet, glide.verlet.span());
+        let looks = glide.looks();
+        let (verlet, duration) = (*glide.verlet(), glide.verlet().span());
         let (free, freely) = verlet.free();
-        let (mut series, mut velocity) = (state.series, glide.run.velocity);
+        let (mut series, mut velocity) = (state.series, glide.velocity());
         if mode * velocity.re() < 0.0 {
             return;
         }
         while let Some(effort) = glide.next() {
-            let net = effort - Self::raised::<E>(series, glide.levels.0);
+            let net = effort - Self::raised::<G>(series, glide.levels().0);
             let displacement = verlet.displacement(velocity, net);
             let predicted = verlet.predicted(velocity, net);
             let motion =

@@ -6,8 +6,8 @@ use super::super::elements::stribeck::{fall_power_by, fall_slope};
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::{HsiehPanState, HsiehPanTrial, Mode};
-use crate::exponential::fading_twice_and_faded_of;
-use crate::scalar::{Scalar, sign};
+use crate::math::exponential::fading_twice_and_faded_of;
+use crate::math::scalar::{Scalar, sign};
 
 /// Of a force, what is more than round-off.
 pub(super) const ROUNDING: f64 = 1e-13;

@@ -1,7 +1,7 @@
 //! How soft the spring of a contact can be.
 
 use crate::friction::elements::loading::{Curve, Loading};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Of a stiffness, more than is lost where another one is taken off it.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;

@@ -3,7 +3,7 @@
 use super::super::elements::loading::Curve;
 use super::super::elements::spring::{SpringState, Walk};
 use super::super::{Entry, LawState, Outcome, Statistics};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// State of [`HsiehPan`]; forces are those at level 1.
 #[derive(Debug, Clone)]

@@ -7,7 +7,7 @@ use super::super::elements::spring::Walk;
 use super::super::{Channels, Motion, Outcome};
 use super::HsiehPan;
 use super::state::{HsiehPanState, HsiehPanTrial, Mode};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 /// Steps of the reference integrator above this share of τ: Runge-Kutta is good to the fifth power of it.
 const LONGEST_FILTER: f64 = 0.3;

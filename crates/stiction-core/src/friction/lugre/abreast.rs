@@ -4,11 +4,12 @@
 use stiction_dispatch::Vector;
 
 use super::{BristleState, LuGre};
+use crate::friction::elements::abreast::{Block, Bodies, Contacts, Rest};
 use crate::friction::elements::bell::Bells;
 use crate::friction::elements::lag::shares;
 use crate::friction::elements::slides::SlidesAbreast;
-use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
-use crate::scalar::{Scalar, sign};
+use crate::math::row::{Row, WIDTH};
+use crate::math::scalar::{Scalar, sign};
 
 /// Contacts of [`LuGre`] whose level falls as a bell or not at all, with a damping that does not fall.
 #[derive(Debug, Clone, Default)]

@@ -1,43 +1,39 @@
 //! Steps of a bare body, in a loop of their own.
 
 use super::{MaxwellSlip, MaxwellSlipState};
+use crate::friction::PlainSteps;
 use crate::friction::elements::yield_curve::{Course, YieldCurve};
-use crate::integrate::{Efforts, Glide, Seen};
-use crate::scalar::Scalar;
+use crate::math::scalar::Scalar;
 
 impl<S: Scalar> MaxwellSlip<S> {
     /// Steps along branches, all of them exponential or not, until a reverse point more needs room.
     #[inline(always)]
-    pub(super) fn glide_on<
-        E: Efforts<S>,
-        V: Seen<S, MaxwellSlipState<S>>,
-        const EXPONENTIAL: bool,
-    >(
+    pub(super) fn glide_on<G: PlainSteps<S, MaxwellSlipState<S>>, const EXPONENTIAL: bool>(
         &self,
         state: &mut MaxwellSlipState<S>,
-        glide: &mut Glide<S, E, V>,
+        glide: &mut G,
     ) {
         let (curve, damping) = (&self.curve, self.parameters.viscous);
-        let looks = glide.seen.looks();
-        let plainly = glide.verlet.dragged(damping);
+        let looks = glide.looks();
+        let plainly = glide.verlet().dragged(damping);
         let share = plainly.share(damping);
         let braking = plainly.braking(share);
         let mut course = curve.course(&state.spring);
-        let (mut here, mut velocity) = (state.spring.here(), glide.run.velocity);
+        let (mut here, mut velocity) = (state.spring.here(), glide.velocity());
         while let Some(effort) = glide.next() {
             let mut verlet = plainly;
             let (mut push, mut dragging) = (effort - here.force, damping);
-            if !E::HELD {
-                push = effort - here.force * glide.levels.0;
-                dragging = damping * glide.levels.1;
-                verlet = glide.verlet.dragged(dragging);
+            if !G::HELD {
+                push = effort - here.force * glide.levels().0;
+                dragging = damping * glide.levels().1;
+                verlet = glide.verlet().dragged(dragging);
             }
             let displacement = verlet.displacement(velocity, push);
             let predicted = || verlet.predicted(velocity, push - dragging * velocity);
             let effort_then = glide.there(effort, displacement, predicted);
             let (mut share, mut braking, mut dragged_then) = (share, braking, damping);
-            if !E::HELD {
-                dragged_then = damping * glide.beside.levels.1;
+            if !G::HELD {
+                dragged_then = damping * glide.levels_there().1;
                 share = verlet.share(dragged_then);
                 braking = verlet.braking(share);
             }
@@ -50,12 +46,12 @@ impl<S: Scalar> MaxwellSlip<S> {
                 course = turned;
                 here = state.spring.here();
             }
-            let undamped = if E::HELD { here.force } else { here.force * glide.beside.levels.0 };
+            let undamped = if G::HELD { here.force } else { here.force * glide.levels_there().0 };
             let arrived = unbraked - braking * undamped;
             if looks {
                 state.spring.slide(&here.apart());
             }
-            glide.seen.pulled(displacement, here.force);
+            glide.pulled(displacement, here.force);
             velocity =
                 glide.accept(displacement, arrived, undamped + dragged_then * arrived, state);
         }

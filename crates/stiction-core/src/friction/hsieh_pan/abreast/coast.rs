@@ -6,7 +6,7 @@ use stiction_dispatch::{CHUNKS, Mask, Vector};
 
 use super::forward::Ends;
 use super::{Found, Lanes};
-use crate::lanes::{Block, Bodies};
+use crate::friction::elements::abreast::{Block, Bodies};
 
 /// Steps of rows of hooks of which all slide. Returns whether they were taken: all or none.
 #[inline(always)]

@@ -4,8 +4,8 @@
 use stiction_dispatch::{CHUNKS, Mask, Vector};
 
 use super::{Found, Lanes, Odds, ROUNDING, accept};
-use crate::exponential::{faded, fading};
-use crate::lanes::{Block, Bodies};
+use crate::friction::elements::abreast::{Block, Bodies};
+use crate::math::exponential::{faded, fading};
 
 /// Steps of rows of hooks of which all slide. Says of each row which lanes have not gone on.
 #[inline(always)]

@@ -16,11 +16,12 @@ use stiction_dispatch::{CHUNKS, Mask, Vector};
 
 use super::slide::ROUNDING;
 use super::{HsiehPan, HsiehPanState};
+use crate::friction::elements::abreast::{Block, Bodies, Contacts, Rest};
 use crate::friction::elements::loading::Loading;
 use crate::friction::elements::memory::ReversePoint;
 use crate::friction::elements::spring::SpringState;
-use crate::lanes::{Block, Bodies, Contacts, Rest, Row, WIDTH};
-use crate::scalar::{SHORTER, Scalar};
+use crate::math::row::{Row, WIDTH};
+use crate::math::scalar::{SHORTER, Scalar};
 
 use coast::coast;
 use forward::forward;

@@ -5,11 +5,11 @@ use stiction_dispatch::{CHUNKS, Mask, Vector};
 
 use super::stick::shortly;
 use super::{Found, Known, Lanes, Odds, accept};
+use crate::friction::elements::abreast::{Block, Bodies};
 use crate::friction::elements::branch::SYNCHRONISED;
-use crate::lanes::{Block, Bodies};
-use crate::scalar::{SECOND_BELOW, SHORT};
+use crate::math::scalar::{SECOND_BELOW, SHORT};
 
-/// Of the margin, what creep is sure to keep through a step of z < [`SHORTER`](crate::scalar::SHORTER): it goes on where this
+/// Of the margin, what creep is sure to keep through a step of z < [`SHORTER`](crate::math::scalar::SHORTER): it goes on where this
 /// and what the limit rises by are above 0. By far: 1 − z·φ₁ > 0.99·φ₁ there. Where the limit is below
 /// the hardening and does not make up for this much of it, none begins.
 const SURE: f64 = 0.99;

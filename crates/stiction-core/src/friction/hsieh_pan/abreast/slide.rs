@@ -1,10 +1,11 @@
 //! Any steps of sliding hooks.
 
 use super::{Lanes, ROUNDING};
-use crate::exponential::{faded, fading};
+use crate::friction::elements::abreast::{Block, Bodies};
 use crate::friction::elements::lag::shares;
-use crate::lanes::{Block, Bodies, Row, WIDTH, bits, pick};
-use crate::scalar::sign;
+use crate::math::exponential::{faded, fading};
+use crate::math::row::{Row, WIDTH, bits, pick};
+use crate::math::scalar::sign;
 
 /// Steps of these sliding hooks of a row. The spring is asked only where it may hold one of them back
 /// or catch its hook. Returns which of them have missed theirs.

@@ -5,10 +5,10 @@ use stiction_dispatch::{Mask, Vector};
 
 use super::onward::{line, second};
 use super::{Lanes, SLACK};
-use crate::exponential::faded;
+use crate::friction::elements::abreast::{Block, Bodies, Rest};
 use crate::friction::elements::branch::SYNCHRONISED;
-use crate::lanes::{Block, Bodies, Rest};
-use crate::scalar::{SECOND, SHORT, SHORTER};
+use crate::math::exponential::faded;
+use crate::math::scalar::{SECOND, SHORT, SHORTER};
 
 /// Steps of these sticking hooks of a row. What few of them need is left out where none does.
 #[inline(always)]

@@ -1,0 +1,4 @@
+//! Many motors at once: ensembles, and motors side by side in the lanes of a vector.
+
+pub mod ensemble;
+pub mod lanes;

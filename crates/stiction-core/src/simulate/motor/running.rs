@@ -1,0 +1,575 @@
+//! A motor over some number type, on its way.
+
+use super::MotorSpec;
+use super::column::{Rows, Showing, Told};
+use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
+use crate::integrate::{
+    Acting, Division, Efforts, Integrator, Longest, MOST_PARTS, Plain, Steps, Stillness, finer,
+    parts, sample,
+};
+use crate::math::scalar::Scalar;
+use crate::plant::drive::{Way, arriving};
+use crate::plant::{Machine, Run};
+use crate::simulate::model::CHUNK;
+use crate::simulate::range::{Range, ordinary_motor};
+use crate::support::error::{Error, Result};
+use crate::support::samples::{PerSample, Surroundings};
+use crate::support::work::{self, Meter};
+
+fn whole_parts(parts: f64, most: f64, dt: f64) -> Result<u32> {
+    if parts <= most {
+        return Ok(parts as u32);
+    }
+    Err(Error::TooLong { given: dt, longest: dt * most / parts })
+}
+
+/// A motor over some number type, with its running state.
+#[derive(Debug, Clone)]
+pub struct Running<S: Scalar> {
+    /// Everything but friction.
+    pub machine: Machine<S>,
+    /// Friction law.
+    pub law: Law<S>,
+    /// Friction state.
+    pub state: AnyState<S>,
+    /// Body.
+    pub run: Run<S>,
+    /// Inputs on their way to the drive, where an effect delays them or lets them lag.
+    pub way: Option<Way<S>>,
+    /// Integrator.
+    pub integrator: Integrator,
+    /// What its steps hold at most.
+    pub longest: Longest,
+    /// Parts of a sample above which it refuses to go on.
+    pub most_parts: f64,
+    /// Within what a step needs no watch.
+    pub(crate) range: Range,
+    /// Work that the next runs may make together; what their samples allow without it.
+    pub(crate) allowance: Option<f64>,
+}
+
+impl<S: Scalar> Running<S> {
+    /// Branch counters of the contact.
+    pub fn statistics(&self) -> Statistics {
+        with_state!(&self.state, |state| state.statistics())
+    }
+
+    /// At rest at 0, never moved.
+    pub fn new(spec: &MotorSpec, values: &[S]) -> Self {
+        let (machine, law) = spec.build(values);
+        let state = law.initial();
+        let zero = S::constant(0.0);
+        let run = machine.start(zero, zero);
+        let own = &machine.effects;
+        let (delay, slowness, lag) = (own.delay(), own.slowness(), own.lag());
+        let any = delay.is_some() || slowness.is_some() || lag.is_some();
+        let way = any.then(|| Way::new(delay, slowness, lag));
+        let integrator = spec.integrator;
+        let plain: Vec<f64> = values.iter().map(|value| value.re()).collect();
+        let a_second = with_law!(&law, |law| parts(&machine, law, 1.0, Longest::USUAL));
+        // How finely the reference divides hangs on its state.
+        let ordinary = integrator == Integrator::Fast && ordinary_motor(spec, &plain);
+        let range = Range::new(ordinary, a_second);
+        Self {
+            machine,
+            law,
+            state,
+            run,
+            way,
+            integrator,
+            longest: Longest::USUAL,
+            most_parts: MOST_PARTS,
+            range,
+            allowance: None,
+        }
+    }
+
+    /// Goes on from where another motor is; its state depends on no parameter of this one.
+    pub fn resume(&mut self, from: &Running<f64>) {
+        self.state = from.state.lift();
+        self.run = from.run.lift();
+        self.machine.effects.resume(&from.machine.effects);
+        self.machine.refresh(&mut self.run);
+        self.range.follow(&from.range);
+        if let (Some(way), Some(from)) = (&mut self.way, &from.way) {
+            way.resume(from);
+        }
+    }
+
+    /// Refuses a sample that is too long.
+    pub(crate) fn check_step(&self, dt: f64) -> Result<()> {
+        whole_parts(self.parts(dt), self.most_parts, dt).map(|_| ())
+    }
+
+    /// What a sample of this duration costs at least, see [`crate::support::work`].
+    pub(crate) fn cost(&self, dt: f64) -> f64 {
+        self.parts(dt) * self.of_step() as f64
+    }
+
+    /// The same where this run is under that load.
+    pub(crate) fn cost_here(&self, load: f64, dt: f64) -> f64 {
+        let Division { steps, .. } = self.division(dt);
+        with_law_and_state!(&self.law, &self.state, |law, state| {
+            let finer = finer(
+                &self.machine,
+                law,
+                &self.run,
+                (S::constant(0.0), S::constant(load)),
+                dt / steps,
+            );
+            let whole = (steps * finer).max(self.integrator.inner(law, state, dt));
+            whole * self.of_step() as f64
+        })
+    }
+
+    /// What a step costs.
+    fn of_step(&self) -> u64 {
+        with_law!(&self.law, |law| self.integrator.of_step::<S>(steep(law)))
+    }
+
+    /// Steps of a sample of this duration.
+    fn parts(&self, dt: f64) -> f64 {
+        self.division(dt).steps
+    }
+
+    /// How a sample of this duration is divided, but for what effects make of it.
+    pub fn division(&self, dt: f64) -> Division {
+        let (machine, longest) = (&self.machine, self.longest);
+        with_law!(&self.law, |law| Division::of(machine, law, dt, longest, self.integrator))
+    }
+
+    /// One sample, at the temperature of the run.
+    #[inline]
+    pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
+        self.step_within(input, load, dt, &mut Meter::of_a_sample())
+    }
+
+    /// The same where its work is counted with that of others.
+    #[inline]
+    pub(crate) fn step_within(
+        &mut self,
+        input: f64,
+        load: f64,
+        dt: f64,
+        meter: &mut Meter,
+    ) -> Result<()> {
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let Division { steps, pieces } =
+                Division::of(&self.machine, law, dt, self.longest, self.integrator);
+            let finer = finer(
+                &self.machine,
+                law,
+                &self.run,
+                (S::constant(input), S::constant(load)),
+                dt / steps,
+            );
+            let parts = pieces * whole_parts(steps * finer, self.most_parts, dt)?;
+            state.make_room(parts as usize + CHUNK / 4);
+            let before = self.run;
+            let arrived = arriving(&mut self.way.as_mut(), input, dt);
+            let whole =
+                if self.machine.is_bare() { sample::<_, _, true> } else { sample::<_, _, false> };
+            whole(
+                &self.machine,
+                law,
+                state,
+                &mut self.run,
+                arrived,
+                S::constant(load),
+                dt,
+                (0..parts, pieces),
+                self.integrator,
+                meter,
+            )?;
+            self.machine.wind(&mut self.run, arrived, dt);
+            self.machine.remember(&before, &mut self.run);
+            Ok(())
+        })
+    }
+
+    /// Samples; `row` sees the body, the machine and one state of the law after each.
+    pub fn simulate(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        dt: PerSample<'_>,
+        row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+    ) -> Result<()> {
+        self.simulate_under(inputs, around, |_| S::constant(0.0), dt, row)
+    }
+
+    /// As [`Self::simulate`], with a load added that may depend on parameters.
+    pub(crate) fn simulate_under(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        row: impl FnMut(usize, &Run<S>, &Machine<S>, &dyn Fn(usize) -> S),
+    ) -> Result<()> {
+        self.simulate_rows(inputs, around, added, dt, Told(row))
+    }
+
+    /// As [`Self::simulate_under`], for one who sees the samples in the loop itself.
+    pub(crate) fn simulate_rows(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        rows: impl Rows<S>,
+    ) -> Result<()> {
+        let longest = dt.greatest();
+        whole_parts(self.parts(longest), self.most_parts, longest)?;
+        let mut meter = Meter::new(self.allowance.unwrap_or_else(|| work::allowed(inputs.len())));
+        meter.foresee(self.foreseen(&around, dt, inputs.len()))?;
+        let done = if self.machine.is_bare() {
+            self.simulate_kind::<true>(inputs, around, added, dt, rows, &mut meter)
+        } else {
+            self.simulate_kind::<false>(inputs, around, added, dt, rows, &mut meter)
+        };
+        self.allowance = self.allowance.map(|_| meter.left());
+        done
+    }
+
+    /// What samples cost at least.
+    pub(crate) fn foreseen(
+        &self,
+        around: &Surroundings<'_>,
+        dt: PerSample<'_>,
+        samples: usize,
+    ) -> f64 {
+        let parts = match dt {
+            PerSample::Same(dt) => self.parts(dt) * samples as f64,
+            PerSample::Each(values) => self.parts(values.iter().sum()),
+        };
+        let plain = self.has_rows() && self.goes_plainly(around);
+        let cost = with_law!(&self.law, |law| if plain && law.glides() {
+            work::in_a_row::<S>() * law.glide_cost()
+        } else {
+            self.of_step()
+        });
+        parts * cost as f64
+    }
+
+    /// Whether this motor has plain steps.
+    fn has_rows(&self) -> bool {
+        self.machine.is_bare() || (self.machine.is_unchanged() && self.way.is_none())
+    }
+
+    /// Whether plain steps may go in rows.
+    fn goes_plainly(&self, around: &Surroundings<'_>) -> bool {
+        self.integrator == Integrator::Fast && around.is_steady()
+    }
+
+    fn simulate_kind<const BARE: bool>(
+        &mut self,
+        inputs: &[f64],
+        around: Surroundings<'_>,
+        added: impl Fn(usize) -> S,
+        dt: PerSample<'_>,
+        mut rows: impl Rows<S>,
+        meter: &mut Meter,
+    ) -> Result<()> {
+        let plain = (BARE || self.has_rows()) && self.goes_plainly(&around);
+        let mut way = self.way.as_mut();
+        with_law_and_state!(&self.law, &mut self.state, |law, state| {
+            let glides = plain && law.glides();
+            let strains = !BARE && self.machine.effects.strains();
+            let remembers = !BARE && self.machine.effects.remembers();
+            let mut known = f64::NAN;
+            let (mut plainly, mut divided, mut pieces) = (1.0, 1, 1);
+            let (longest, integrator) = (self.longest, self.integrator);
+            let mut room = 0;
+            let mut ahead = Ahead::default();
+            let mut index = 0;
+            while index < inputs.len() {
+                let dt_now = dt.at(index);
+                if dt_now != known {
+                    let division = Division::of(&self.machine, law, dt_now, longest, integrator);
+                    (plainly, pieces) = (division.steps, division.pieces);
+                    divided = whole_parts(plainly, self.most_parts, dt_now)?;
+                    known = dt_now;
+                }
+                self.run.transmitted = around.transmitted_at(index);
+                self.run.temperature = around.temperature_at(index);
+                self.run.enabled = around.enabled_at(index);
+                if strains {
+                    let load = added(index) + around.load.at(index);
+                    let finer = finer(
+                        &self.machine,
+                        law,
+                        &self.run,
+                        (S::constant(inputs[index]), load),
+                        dt_now / plainly,
+                    );
+                    divided = whole_parts(plainly * finer, self.most_parts, dt_now)?;
+                }
+                let mut passed = 0;
+                let before = self.run;
+                if glides && (!BARE || self.machine.glides(&self.run)) {
+                    let steps = Steps::of(dt_now, divided, pieces);
+                    let finely = steps.goes_in_pieces(law, state);
+                    let (span, parts) = if finely {
+                        (steps.piece, divided * pieces)
+                    } else {
+                        (steps.span, divided)
+                    };
+                    let machine = &self.machine;
+                    if !S::CARRIES {
+                        ahead.reach(index, inputs, around.load, |k, input, load| {
+                            let load = added(k) + load;
+                            let effort = if BARE {
+                                machine.bare_effort(input, load)
+                            } else {
+                                machine.driven_directly(input, load)
+                            };
+                            effort.re()
+                        });
+                    }
+                    let efforts = Applied::<_, _, BARE> {
+                        machine,
+                        inputs,
+                        around,
+                        added: &added,
+                        ahead: &ahead,
+                        span,
+                        counts: !BARE && machine.counts_work(),
+                        rough: if BARE {
+                            0.0
+                        } else {
+                            machine.roughness(law.greatest_stiffness(), span.re())
+                        },
+                    };
+                    // Not to the end, which would be looked for anew after every event.
+                    let end =
+                        if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
+                    // What effects remember changes after each sample.
+                    let end = if remembers { index + 1 } else { dt.same_until(index, end) };
+                    let most = if S::CARRIES { MOST_AT_ONCE / 8 } else { MOST_AT_ONCE };
+                    let end = end.min(index + 1 + most / parts as usize);
+                    let begun = index;
+                    let (samples, state) = (index..end, &mut *state);
+                    let step = (span, parts);
+                    (self.run, index, passed) = if S::CARRIES {
+                        let seen = Showing { machine, rows: &mut rows };
+                        let mut glide = machine.glide(self.run, efforts, seen, samples, step);
+                        S::run(Plain { law, state, glide: &mut glide });
+                        (glide.run, glide.samples.start, glide.part)
+                    } else if BARE && let Some(places) = rows.places(samples.clone()) {
+                        let glide = machine.glide(self.run, efforts, places, samples, step);
+                        S::run(Plain { law, state, glide })
+                    } else {
+                        let seen = Showing { machine, rows: &mut rows };
+                        let glide = machine.glide(self.run, efforts, seen, samples, step);
+                        S::run(Plain { law, state, glide })
+                    };
+                    room = 0; // what the glide has left of it nobody counted
+                    if !finely {
+                        passed *= pieces;
+                    }
+                    let steps = (index - begun) as u64 * u64::from(parts);
+                    meter.take(steps * work::in_a_row::<S>() * law.glide_cost())?;
+                    if remembers && index > begun {
+                        self.machine.remember(&before, &mut self.run);
+                    }
+                    // Also what needs other steps from here on.
+                    if index == end || (strains && index > begun && passed == 0) {
+                        continue;
+                    }
+                }
+                if self.run.is_lost() {
+                    let seen = &*state;
+                    rows.see(index, &self.run, &self.machine, |column| seen.output(column));
+                    index += 1;
+                    continue;
+                }
+                let left = divided * pieces - passed;
+                if room < left {
+                    // Once a chunk where samples are not divided, never inside a step.
+                    room = (CHUNK as u32).max(left);
+                    state.make_room(room as usize + CHUNK / 4);
+                }
+                room -= left;
+                let arrived = arriving(&mut way, inputs[index], dt_now);
+                sample::<_, _, BARE>(
+                    &self.machine,
+                    law,
+                    state,
+                    &mut self.run,
+                    arrived,
+                    added(index) + around.load.at(index),
+                    dt_now,
+                    (passed..divided * pieces, pieces),
+                    integrator,
+                    meter,
+                )?;
+                self.machine.wind(&mut self.run, arrived, dt_now);
+                self.machine.remember(&before, &mut self.run);
+                let seen = &*state;
+                rows.see(index, &self.run, &self.machine, |column| seen.output(column));
+                index += 1;
+            }
+        });
+        Ok(())
+    }
+}
+
+/// All effort but friction on a bare machine; on another that is unchanged, that of the drive and the load.
+struct Applied<'a, S: Scalar, A, const BARE: bool> {
+    machine: &'a Machine<S>,
+    inputs: &'a [f64],
+    around: Surroundings<'a>,
+    added: &'a A,
+    ahead: &'a Ahead,
+    /// Duration of a step.
+    span: S,
+    /// Whether the work of the contact is counted, in steps as rough as that.
+    counts: bool,
+    rough: f64,
+}
+
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, S, A, BARE> {
+    #[inline(always)]
+    fn load(&self, sample: usize) -> S {
+        (self.added)(sample) + self.around.load.at(sample)
+    }
+}
+
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, S, A, BARE> {
+    const HELD: bool = BARE;
+
+    #[inline(always)]
+    fn beside(
+        &self,
+        sample: usize,
+        run: &Run<S>,
+        displacement: S,
+        velocity: S,
+        span: S,
+    ) -> Acting<S> {
+        let acting = || (self.at(sample), self.load(sample));
+        self.machine.beside(run, acting, displacement, velocity, span)
+    }
+
+    #[inline(always)]
+    fn levels(&self, sample: usize, run: &Run<S>, arrived: Option<&Acting<S>>) -> (S, S) {
+        if BARE {
+            return (S::constant(1.0), S::constant(1.0));
+        }
+        self.machine.levels_of(run, || (self.at(sample), self.load(sample)), arrived)
+    }
+
+    #[inline(always)]
+    fn settle(&self, run: &mut Run<S>, from: (S, S), efforts: (S, S)) {
+        if self.counts {
+            self.machine.settle(run, from, efforts, (self.rough, self.span.re()));
+        }
+    }
+
+    #[inline(always)]
+    fn is_fine(&self, speed: f64, effort: f64, levels: (S, S)) -> bool {
+        self.machine.is_fine(speed, effort, levels, self.span.re())
+    }
+
+    fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S)) -> Stillness {
+        self.machine.stillness(run, greatest, levels, self.span)
+    }
+
+    #[inline(always)]
+    fn at(&self, sample: usize) -> S {
+        if !S::CARRIES {
+            return S::constant(self.ahead.at(sample));
+        }
+        let load = self.load(sample);
+        if BARE {
+            self.machine.bare_effort(self.inputs[sample], load)
+        } else {
+            self.machine.driven_directly(self.inputs[sample], load)
+        }
+    }
+
+    #[inline(always)]
+    fn within(&self, samples: std::ops::Range<usize>, greatest: f64) -> usize {
+        let plain = |effort: &f64| effort.abs() <= greatest;
+        if S::CARRIES {
+            return samples.take_while(|k| plain(&self.at(*k).re())).count();
+        }
+        // Without a choice in eight of them they become vectors.
+        let efforts = self.ahead.of(samples);
+        let eights = efforts.chunks_exact(8);
+        let whole = |eight: &&[f64]| eight.iter().fold(true, |all, effort| all & plain(effort));
+        let passed = 8 * eights.take_while(whole).count();
+        passed + efforts[passed..].iter().take_while(|effort| plain(effort)).count()
+    }
+}
+
+/// Whether friction of a law rises too steeply to be linearised.
+const fn steep<S: Scalar, L: FrictionLaw<S>>(_: &L) -> bool {
+    L::STEEP
+}
+
+/// Steps of a row of plain steps after which is asked whether to go on.
+const MOST_AT_ONCE: usize = 1 << 15;
+/// Samples that a row of plain steps goes on at most.
+const AHEAD: usize = 8 * CHUNK;
+
+/// Efforts of some samples, made before the loop that asks for them one by one: by themselves they
+/// become vectors.
+struct Ahead {
+    from: usize,
+    number: usize,
+    efforts: [f64; AHEAD],
+}
+
+impl Default for Ahead {
+    fn default() -> Self {
+        Self { from: 0, number: 0, efforts: [0.0; AHEAD] }
+    }
+}
+
+impl Ahead {
+    /// Has the effort of this sample and of those behind it, made of sample, input and load.
+    #[inline(always)]
+    fn reach(
+        &mut self,
+        sample: usize,
+        inputs: &[f64],
+        loads: PerSample<'_>,
+        effort: impl Fn(usize, f64, f64) -> f64,
+    ) {
+        if self.from <= sample && sample < self.end() {
+            return;
+        }
+        self.from = sample;
+        self.number = AHEAD.min(inputs.len() - sample);
+        let end = self.end();
+        let places = self.efforts[..self.number].iter_mut();
+        let given = (sample..end).zip(&inputs[sample..end]);
+        // What the loop had to ask of each sample would keep it from vectors.
+        if let PerSample::Same(load) = loads {
+            for (place, (k, input)) in places.zip(given) {
+                *place = effort(k, *input, load);
+            }
+        } else {
+            for (place, (k, input)) in places.zip(given) {
+                *place = effort(k, *input, loads.at(k));
+            }
+        }
+    }
+
+    /// The first sample that it does not have.
+    fn end(&self) -> usize {
+        self.from + self.number
+    }
+
+    #[inline(always)]
+    fn at(&self, sample: usize) -> f64 {
+        self.efforts[sample - self.from]
+    }
+
+    #[inline(always)]
+    fn of(&self, samples: std::ops::Range<usize>) -> &[f64] {
+        &self.efforts[samples.start - self.from..samples.end - self.from]
+    }
+}

@@ -1,0 +1,1 @@
+"""What the repository promises about itself: rooms, names, words, one place for each thing."""
