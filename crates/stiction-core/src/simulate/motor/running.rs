@@ -276,7 +276,6 @@ impl<S: Scalar> Running<S> {
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
             let strains = !BARE && self.machine.effects.strains();
-            let remembers = !BARE && self.machine.effects.remembers();
             let mut known = f64::NAN;
             let (mut plainly, mut divided, mut pieces) = (1.0, 1, 1);
             let (longest, integrator) = (self.longest, self.integrator);
@@ -306,7 +305,6 @@ impl<S: Scalar> Running<S> {
                     divided = whole_parts(plainly * finer, self.most_parts, dt_now)?;
                 }
                 let mut passed = 0;
-                let before = self.run;
                 if glides && (!BARE || self.machine.glides(&self.run)) {
                     let steps = Steps::of(dt_now, divided, pieces);
                     let finely = steps.goes_in_pieces(law, state);
@@ -344,8 +342,7 @@ impl<S: Scalar> Running<S> {
                     // Not to the end, which would be looked for anew after every event.
                     let end =
                         if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
-                    // What effects remember changes after each sample.
-                    let end = if remembers { index + 1 } else { dt.same_until(index, end) };
+                    let end = dt.same_until(index, end);
                     let most = if S::CARRIES { MOST_AT_ONCE / 8 } else { MOST_AT_ONCE };
                     let end = end.min(index + 1 + most / parts as usize);
                     let begun = index;
@@ -370,9 +367,6 @@ impl<S: Scalar> Running<S> {
                     }
                     let steps = (index - begun) as u64 * u64::from(parts);
                     meter.take(steps * work::in_a_row::<S>() * law.glide_cost())?;
-                    if remembers && index > begun {
-                        self.machine.remember(&before, &mut self.run);
-                    }
                     // Also what needs other steps from here on.
                     if index == end || (strains && index > begun && passed == 0) {
                         continue;
@@ -391,6 +385,7 @@ impl<S: Scalar> Running<S> {
                     state.make_room(room as usize + CHUNK / 4);
                 }
                 room -= left;
+                let before = self.run;
                 let arrived = arriving(&mut way, inputs[index], dt_now);
                 sample::<_, _, BARE>(
                     &self.machine,

@@ -289,12 +289,12 @@ impl<S: Scalar> Effects<S> {
         self.inputs.is_empty() && !self.adds_efforts() && !self.changes_levels()
     }
 
-    /// Whether effects do nothing but add efforts and change levels, or misread the position.
+    /// Whether effects do nothing but add efforts and change levels, without a memory, or misread the position.
     pub fn only_push(&self) -> bool {
         let kept = self.delay.is_none() && self.slowness.is_none() && self.lag.is_none();
         let (friction, viscous, effort) = self.unit;
         let seeded = [friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero());
-        kept && self.inputs.is_empty() && !seeded
+        kept && self.inputs.is_empty() && !self.remembers && !seeded
     }
 
     /// What the input becomes.
