@@ -159,7 +159,8 @@ impl Running<f64> {
         let actual: Option<&dyn Fn(f64) -> f64> =
             if sensor.misreads() { Some(&actual) } else { None };
         let mut meter = Meter::new(work::allowed(motion.samples()));
-        self.longest.phase = self.longest.phase.max(self.phase_of_samples(dt.greatest()));
+        let phase = self.longest.phase.max(self.phase_of_samples(dt.greatest()));
+        self.longest = Longest::close(phase);
         for k in 0..motion.samples() {
             let track = Track::new(positions, actual, k);
             let behind = track.position() - self.run.position;
