@@ -312,6 +312,7 @@ class Motor:
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,
         transmitted: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
         out: _Floats | None = None,
         strict: bool = True,
     ) -> tuple[_Floats, _Floats]: ...

@@ -64,6 +64,96 @@ def test_derivatives_by_input_and_load_are_those_of_differences(law):
     assert np.asarray(by_input) == pytest.approx(0.5 * np.asarray(by_load))
 
 
+BEGUN = {"position": 0.4, "velocity": -0.6}
+CONTACTS = {law.name: {each.name: 0.3 * each.typical for each in law.start} for law in st.laws()}
+"""What the contact of each law brings along."""
+OFTEN = ("coulomb", "hsieh_pan", "lugre", "maxwell_slip", "rate_and_state")
+
+
+def moving(law, inputs, start, own=None, velocity=1e-3, **tables):
+    """A loss that hangs on a motion from a start."""
+    friction = {"law": law, **RIGS.get(law, {})}
+    plant = st.Plant.from_dict(machine("coulomb").to_dict() | {"friction": friction} | tables)
+    position, speed = simulate(plant, own or {}, inputs, DT, start=start)
+    return jax.numpy.sum(position**2) + velocity * jax.numpy.sum(speed**2)
+
+
+@pytest.mark.parametrize(
+    "law", [pytest.param(n, marks=() if n in OFTEN else pytest.mark.slow) for n in CONTACTS]
+)
+def test_derivatives_by_the_start_are_those_of_differences(law):
+    start, inputs = BEGUN | CONTACTS[law], 0.2 * current(60)
+    exact = jax.jit(jax.grad(lambda begun: moving(law, inputs, begun)))(start)
+    assert all(float(exact[name]) != 0.0 for name in BEGUN)
+    for name, value in start.items():
+        step = STEP * max(abs(value), 1e-3)
+        high, low = (
+            moving(law, inputs, {**start, name: value + sign * step}) for sign in (1.0, -1.0)
+        )
+        chord = float(high - low) / (2.0 * step)
+        assert float(exact[name]) == pytest.approx(chord, rel=1e-4, abs=1e-7), name
+
+
+@pytest.mark.parametrize("name", ["shaft_compliance", "backlash", "cogging"])
+def test_a_second_mass_starts_with_the_first(name):
+    record = next(each for each in st.effects() if each.name == name)
+    effect = {"name": name, **{each.name: each.typical for each in record.parameters}}
+
+    def loss(begun):
+        return moving("coulomb", 0.2 * current(60), begun, effects=[effect])
+
+    exact = jax.grad(loss)(BEGUN)
+    for own, value in BEGUN.items():
+        high, low = (loss({**BEGUN, own: value + sign * STEP}) for sign in (1.0, -1.0))
+        assert float(exact[own]) == pytest.approx(float(high - low) / (2.0 * STEP), rel=NEAR)
+
+
+def test_a_start_is_where_a_motor_is_put():
+    motor = machine("coulomb").motor()
+    motor.reset(**BEGUN)
+    run = motor.simulate(current(), DT)
+    position, velocity = simulate(machine("coulomb"), {}, current(), DT, start=BEGUN)
+    assert np.asarray(position).tobytes() == run.position.tobytes()
+    assert np.asarray(velocity).tobytes() == run.velocity.tobytes()
+    # A motor keeps what its contact remembers where only its body is put elsewhere.
+    motor = machine("lugre").motor()
+    motor.simulate(current(), DT)
+    begun = {name: motor.state[name] for name in BEGUN}
+    position, _ = simulate(motor, {}, current(), DT, start=begun)
+    assert np.asarray(position).tolist() == motor.simulate(current(), DT).position.tolist()
+
+
+def test_start_input_and_parameters_go_together_and_in_batches():
+    inputs, start = 0.2 * current(40), BEGUN | {"force": 0.1}
+
+    def loss(begun, own, u):
+        return moving("lugre", u, begun, own, velocity=0.0)
+
+    by_start, by_own, by_input = jax.grad(loss, (0, 1, 2))(start, {"coulomb": 0.3}, inputs)
+    way = np.random.default_rng(0).standard_normal(len(inputs))
+    high, low = (loss(start, {"coulomb": 0.3}, inputs + s * STEP * way) for s in (1.0, -1.0))
+    assert float(by_input @ way) == pytest.approx(float(high - low) / (2.0 * STEP), rel=1e-4)
+    high, low = (loss(start, {"coulomb": 0.3 + s * STEP}, inputs) for s in (1.0, -1.0))
+    assert float(by_own["coulomb"]) == pytest.approx(float(high - low) / (2.0 * STEP), rel=1e-4)
+    places = np.array([0.1, 0.4])
+    rows = jax.vmap(jax.grad(lambda x: loss({**start, "position": x}, {"coulomb": 0.3}, inputs)))
+    assert float(rows(places)[1]) == pytest.approx(float(by_start["position"]), rel=1e-12)
+
+
+def test_a_servo_has_derivatives_by_its_start():
+    drive = {"kind": "servo", "proportional": 3.0, "supply_v": 12.0, "resistance_ohm": 3.7,
+             "torque_constant": 0.5}  # fmt: skip
+    servo = st.Plant.from_dict(machine("coulomb").to_dict() | {"drive": drive})
+
+    def loss(x):
+        return jax.numpy.sum(
+            simulate(servo, {}, np.full(50, 0.5), 1e-3, start={"position": x})[0] ** 2
+        )
+
+    chord = float(loss(0.1 + STEP) - loss(0.1 - STEP)) / (2.0 * STEP)
+    assert float(jax.grad(loss)(0.1)) == pytest.approx(chord, rel=NEAR)
+
+
 def test_batches_go_over_parameters_and_inputs():
     levels, inputs = np.array([0.1, 0.2, 0.3]), np.stack([current(), 0.7 * current()])
 
@@ -122,6 +212,8 @@ def test_what_a_plant_states_and_what_a_motor_has_stays():
 def test_refusals_are_sentences():
     with pytest.raises(st.InputError, match="nonsense"):
         simulate(machine("coulomb"), {"nonsense": 1.0}, current(), DT)
+    with pytest.raises(st.InputError, match="start"):
+        simulate(machine("coulomb"), {}, current(), DT, start={"force": 0.1})
     with pytest.raises(st.InputError, match=r"give \(n,\) each"):
         simulate(machine("coulomb"), {}, np.zeros((2, 3)), DT)
     with pytest.raises(Exception, match="velocity has no derivative by input"):

@@ -12,7 +12,6 @@ use super::Motor;
 use crate::arguments::{Names, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, rising, target};
 use crate::error::{IntoPython, is_finite, outcome};
-use crate::interrupt::detached;
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
 
@@ -317,15 +316,19 @@ impl Motor {
         PyArray1::from_vec(py, values).reshape([gains_of(&list), rows])
     }
 
-    /// Exact derivatives of position and velocity by parameters, from the present state; the motor
-    /// is left as it was.
+    /// Exact derivatives of position and velocity by parameters and by the state at the start, which
+    /// is the present one; the motor is left as it was.
     ///
     /// Parameters
     /// ----------
     /// current, dt, load, temperature, enabled, transmitted
     ///     As for ``simulate``.
     /// parameters : sequence of str
-    ///     Whole paths, as ``parameters`` of the motor has them.
+    ///     Whole paths, as ``parameters`` of the motor has them; ``start.position`` and
+    ///     ``start.velocity`` are those of the motor, with its second mass; where a start is given its
+    ///     values too: ``start.force`` and so on.
+    /// start : dict of str to float, optional
+    ///     As for ``follow``: what the contact brings along in place of its own state.
     /// out : numpy.ndarray, shape (2, parameters, n), optional
     ///     Array to fill, C-contiguous float64.
     /// strict : bool
@@ -341,7 +344,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``simulate``; an unknown path, an ``out`` that is no such array.
-    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, transmitted=None, out=None, strict=true))]
+    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, transmitted=None, start=None, out=None, strict=true))]
     #[allow(clippy::type_complexity)] // a pair of arrays, as Python gets it
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn sensitivity<'py>(
@@ -354,6 +357,7 @@ impl Motor {
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
         transmitted: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
         strict: bool,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
@@ -373,10 +377,9 @@ impl Motor {
         let mut rows = target("out", &array, &shape)?;
         let both = rows.as_slice_mut()?;
         let (position, velocity) = both.split_at_mut(both.len() / 2);
-        let core = self.core(py)?.clone();
-        let result = detached(py, || {
+        let result = self.beside(py, start, |spec, start| {
             let rows = [position, velocity];
-            sensitivity_into(core.spec(), core.running(), current, around, dt, &parameters, rows)
+            sensitivity_into(spec, start, current, around, dt, &parameters, rows)
         })?;
         result.or_input_error(py)?;
         outcome(py, strict, "derivatives", [&*both])?;
