@@ -31,10 +31,6 @@ KEYWORDS: Final = {
 """What a motor is made with, by the path of its parameter."""
 BODY: Final = ("position", "velocity")
 """What a run starts from beside what its contact brings along."""
-ALIKE: Final = 1e-9
-"""Share of the range of motion within which a run over a window is the same as the simulation."""
-DIVISIONS: Final = (2, 4, 8, 16, 32)
-"""Of a sample too long for a derivative by the input, that are tried for one that is not."""
 
 
 class Simulation:
@@ -130,18 +126,15 @@ class Simulation:
         Raises
         ------
         InputError
-            As for ``by_effort`` and ``to_effort``; weights of the velocity with ``by_input``.
+            As for ``Motor.gradient``.
         """
         of_values = self.by_parameters(values, current, load, position, velocity)
         if not by_input:
             return of_values, np.zeros_like(current), np.zeros_like(load)
-        if np.any(velocity):
-            raise InputError(
-                "simulate: the velocity has no derivative by input or load; let the loss hang on "
-                "the position, or freeze the input"
-            )
-        of_load = self.by_effort(values, current, load, position)
-        return of_values, of_load * self.to_effort(values, current), of_load
+        motor = self._with(values)
+        weights = (current, self._dt, position, velocity)
+        of_input = motor.gradient(*weights, load=load)
+        return of_values, of_input, motor.gradient(*weights, load=load, by="load")
 
     def by_parameters(
         self,
@@ -175,59 +168,6 @@ class Simulation:
         for own, (_, place, factor) in zip(each[len(self.paths) :], self._following, strict=True):
             found[place] += factor * own
         return found
-
-    def by_effort(
-        self, values: FloatArray, current: FloatArray, load: FloatArray, position: FloatArray
-    ) -> FloatArray:
-        """Derivatives of Σ position·x by an effort that is added to each sample.
-
-        One run over dual numbers for every sixteen samples or so: its cost grows with the square of
-        their number.
-
-        Parameters
-        ----------
-        values, current, load, position
-            As for ``by_parameters``.
-
-        Returns
-        -------
-        numpy.ndarray, shape (n,)
-            Per N·m or N.
-
-        Raises
-        ------
-        InputError
-            A machine whose state at the start no window takes over, or so stiff that a window
-            divides its samples in another way: the derivative would be that of another run.
-        """
-        motor, samples = self._with(values), len(current)
-        self._check(motor, current, load)
-        motion = _motion_of(motor, current, load, self._dt)
-        found = motor.shoot_response(motion, position, samples, samples)
-        return found[:, 0]
-
-    def to_effort(self, values: FloatArray, current: FloatArray) -> FloatArray:
-        """Effort per unit of input in each sample: the gain, 0 beyond the limit of the drive."""
-        motor = self._with(values)
-        if motor.settings()["servo"] is not None:
-            raise InputError("simulate: the goals of a servo have no exact derivative; freeze them")
-        held = np.abs(current) <= motor.settings()["input_limit"]
-        return np.where(held, motor.settings()["torque_constant"], 0.0)
-
-    def _check(self, motor: Motor, current: FloatArray, load: FloatArray) -> None:
-        """Refuses a window that does not run as the simulation does."""
-        if _runs_alike(motor, current, load, self._dt):
-            return
-        remedy = "freeze the input"
-        for parts in DIVISIONS:
-            dt = self._dt / parts
-            if _runs_alike(motor, np.repeat(current, parts), np.repeat(load, parts), dt):
-                remedy = f"give dt = {dt:.3g} or shorter, or freeze the input"
-                break
-        raise InputError(
-            f"simulate: with dt = {self._dt:.3g} this contact is so stiff, or starts in such a "
-            f"state, that a derivative by the input would be that of another run; {remedy}"
-        )
 
     def _with(self, values: FloatArray) -> Motor:
         """The motor with these values, in its state."""
@@ -308,24 +248,6 @@ def _following(plant: Plant | None, paths: Sequence[str]) -> list[tuple[str, int
         and path.partition(".")[2] not in plant.friction.parameters
         and f"friction.{follows[0]}" in paths
     ]
-
-
-def _motion_of(motor: Motor, current: FloatArray, load: FloatArray, dt: float) -> Motion:
-    """Samples from where a motor stands; a window takes its velocity from the first positions."""
-    begin, speed = float(motor.state["position"]), float(motor.state["velocity"])
-    positions = begin + speed * dt * np.minimum(np.arange(len(current) + 1.0), 1.0)
-    return Motion(positions, current, dt, load=load)
-
-
-def _runs_alike(motor: Motor, current: FloatArray, load: FloatArray, dt: float) -> bool:
-    """Whether a window over these samples ends where the simulation of them does."""
-    run = motor.copy().simulate(current, dt, load=load, outputs=["position"]).position
-    last = np.zeros(len(current))
-    last[-1] = 1.0
-    motion = _motion_of(motor, current, load, dt)
-    shot = float(motor.shoot(motion, last, len(current))[0])
-    gone = float(run[-1]) - float(motor.state["position"])
-    return abs(shot - gone) <= ALIKE * max(float(np.ptp(run)), abs(gone), 1e-300)
 
 
 def over_batch(

@@ -27,9 +27,9 @@ def simulate(
     """Simulate held inputs from the state of a machine, with exact derivatives.
 
     Position and velocity are those of ``Motor.simulate``. Backwards, derivatives by the parameters
-    and by the start are those of ``Motor.sensitivity``, breaking away and sticking included; by
-    input and load they are exact as well, of the position alone. It goes through ``jit``, ``grad``
-    and ``vmap`` (over parameters, start, inputs and loads), and not through ``jvp`` or a second
+    and by the start are those of ``Motor.sensitivity``, by input and load those of
+    ``Motor.gradient``, breaking away and sticking included. It goes through ``jit``, ``grad`` and
+    ``vmap`` (over parameters, start, inputs and loads), and not through ``jvp`` or a second
     derivative.
 
     Parameters
@@ -40,7 +40,7 @@ def simulate(
         SI values by path, or by the bare last word where it is unique; every other parameter is the
         machine's.
     current : array_like, shape (n,)
-        Input of the drive, held over each sample.
+        Input of the drive, of a servo its goal, held over each sample.
     dt : float
         s.
     load : array_like, shape (n,), optional
@@ -60,13 +60,12 @@ def simulate(
     InputError
         An unknown parameter or start value, a plant that is no motor; JAX is missing, or counts in
         single precision. Inside a compiled function refusals come as errors of JAX that hold the
-        sentence: values out of bounds, a derivative of the velocity by the input, or one by the
-        input of a contact too stiff for its samples.
+        sentence, such as values out of bounds.
 
     Notes
     -----
-    A derivative by the input costs a run over dual numbers for every sixteen samples; where inputs
-    are constants none is computed.
+    Derivatives by the input cost a run over dual numbers for every eight samples, and as many by
+    the load; where both are constants none is computed.
     """
     jax = _jax()
     values = given.mapping(parameters, "simulate: parameters", "values by name")

@@ -27,7 +27,7 @@ def simulate(
     """Simulate held inputs from the state of a machine, with exact derivatives.
 
     As ``stiction.jax.simulate``: by parameters and start those of ``Motor.sensitivity``, by input
-    and load of the position alone.
+    and load those of ``Motor.gradient``.
 
     Parameters
     ----------
@@ -54,8 +54,7 @@ def simulate(
     ------
     InputError
         An unknown parameter or start value, one out of bounds, a plant that is no motor, shapes
-        that do not fit, a derivative that there is none of (see ``stiction.jax.simulate``);
-        PyTorch is missing.
+        that do not fit; PyTorch is missing.
     """
     torch = _torch()
     values = given.mapping(parameters, "simulate: parameters", "values by name")

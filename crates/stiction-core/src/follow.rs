@@ -259,7 +259,7 @@ where
                 let passage = Passage { displacement, friction: efforts.friction, span };
                 machine.effects.remember(&passage);
             }
-            let input = arriving(&mut way, inputs.at(k), duration);
+            let input = arriving(&mut way, inputs.at(k), None, duration);
             let Efforts { driven, ambient, .. } = &mut efforts;
             if direct {
                 machine.reach_directly(&at, input, load, &mut channels, [driven, ambient]);
@@ -408,11 +408,17 @@ impl<S: Scalar> Run<S> {
     }
 }
 
-/// What of the input reaches the drive during a sample.
+/// What of the input reaches the drive during a sample, with something that comes to it behind a
+/// delay.
 #[inline(always)]
-pub(crate) fn arriving<S: Scalar>(way: &mut Option<&mut Way<S>>, input: f64, dt: f64) -> S {
+pub(crate) fn arriving<S: Scalar>(
+    way: &mut Option<&mut Way<S>>,
+    input: f64,
+    more: Option<S>,
+    dt: f64,
+) -> S {
     match way {
-        None => S::constant(input),
-        Some(way) => way.pass(input, dt),
+        None => more.map_or(S::constant(input), |more| more + input),
+        Some(way) => way.pass(input, more, dt),
     }
 }

@@ -17,6 +17,7 @@ pub mod error;
 pub mod exponential;
 pub mod finite;
 pub mod follow;
+pub mod gradient;
 pub mod integrate;
 pub mod interrupt;
 pub mod kernel;

@@ -16,7 +16,7 @@ from .contact_source import (
     structures_of,
 )
 from .fragments import Fragments
-from .translation import dual_of, parse, reached
+from .translation import call_graph, dual_of, parse
 from .translation.names import nodes
 from .translation.tree import Member, Unit
 
@@ -165,7 +165,7 @@ def _goes_by(unit: Unit, fragments: Fragments) -> frozenset[str]:
     """What the equations read beside velocity, bristles and what acts on the machine."""
     fields = {
         node.name
-        for function in reached(unit, "evaluate")
+        for function in call_graph(unit, "evaluate")
         if function.name not in BOOKKEEPING
         for node in nodes(function.body)
         if isinstance(node, Member)

@@ -2,6 +2,7 @@
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use stiction_core::gradient::{Acting, Weighted, gradient};
 use stiction_core::motor::Motor as Core;
 use stiction_core::sensitivity::{
     EffortSensitivity, follow_columns, follow_sensitivity, sensitivity_into,
@@ -11,7 +12,7 @@ use stiction_core::signatures::{signature_columns, signatures};
 use super::Motor;
 use crate::arguments::{Names, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, rising, target};
-use crate::error::{IntoPython, is_finite, outcome};
+use crate::error::{IntoPython, input_error, is_finite, outcome};
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
 
@@ -385,5 +386,67 @@ impl Motor {
         outcome(py, strict, "derivatives", [&*both])?;
         drop(rows);
         Ok((array.get_item(0)?, array.get_item(1)?))
+    }
+
+    /// Exact derivatives of Σ position·x + velocity·v over the samples of a simulation by its inputs
+    /// and by its loads, from the present state; the motor is left as it was.
+    ///
+    /// Parameters
+    /// ----------
+    /// current, dt, load, temperature, enabled, transmitted
+    ///     As for ``simulate``.
+    /// position, velocity : array_like, shape (n,)
+    ///     Weights of what ``simulate`` gives after each sample.
+    /// by : {"input", "load"}
+    ///     By the input of each sample, of a servo its goal, or by its load.
+    /// strict : bool
+    ///     As for ``follow``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (n,)
+    ///     Per unit of the input, or per N·m or N. Its cost grows with the square of n.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``simulate``; weights that are not as many as the samples.
+    #[pyo3(signature = (current, dt, position, velocity, *, by="input", load=None, temperature=None, enabled=None, transmitted=None, strict=true))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        position: &Bound<'py, PyAny>,
+        velocity: &Bound<'py, PyAny>,
+        by: &str,
+        load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
+        transmitted: Option<&Bound<'py, PyAny>>,
+        strict: bool,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let by = match by {
+            "input" => Acting::Input,
+            "load" => Acting::Load,
+            other => {
+                return Err(input_error(py, format!("by = '{other}'; give 'input' or 'load'")));
+            }
+        };
+        let current = one_row("current", current)?;
+        let shape = current.shape().to_vec();
+        let dt = Each::steps("dt", dt, &shape)?;
+        let around = Around::read([load, temperature, enabled, transmitted], &shape)?;
+        let (position, velocity) = (one_row("position", position)?, one_row("velocity", velocity)?);
+        let current = current.as_slice()?;
+        let weights = Weighted { position: position.as_slice()?, velocity: velocity.as_slice()? };
+        let (dt, around) = (dt.per_sample()?, around.surroundings()?);
+        let found = self.beside(py, None, |spec, start| {
+            gradient(spec, start.running, current, around, dt, weights, by)
+        })?;
+        let found = found.or_input_error(py)?;
+        outcome(py, strict, "derivatives", [found.as_slice()])?;
+        Ok(PyArray1::from_vec(py, found))
     }
 }

@@ -6,9 +6,9 @@ part is refused where a fragment is translated, which the tests do with all of t
 
 from __future__ import annotations
 
-from .dual import dual_of, reached
+from .dual import call_graph, dual_of
 from .parser import parse
 from .rust import rust_of
 from .tokens import TranslationError
 
-__all__ = ["TranslationError", "dual_of", "parse", "reached", "rust_of"]
+__all__ = ["TranslationError", "call_graph", "dual_of", "parse", "rust_of"]

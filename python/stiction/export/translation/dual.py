@@ -44,7 +44,7 @@ from .tree import (
     Zero,
 )
 
-__all__ = ["dual_of", "reached"]
+__all__ = ["call_graph", "dual_of"]
 
 REAL, INT, CONSTANT = Kind("real"), Kind("int"), Kind("constant")
 """Numbers with a derivative, whole ones, and those that never change."""
@@ -135,7 +135,7 @@ FUNCTIONS: Final = {
 """What dual numbers are added, compared and computed with, in the order in which C needs it."""
 
 
-def reached(unit: Unit, entry: str) -> tuple[Function, ...]:
+def call_graph(unit: Unit, entry: str) -> tuple[Function, ...]:
     """A function of a unit and all that it calls, in the order in which C states them."""
     functions = {each.name: each for each in unit.functions}
     found: set[str] = set()
@@ -169,7 +169,7 @@ def dual_of(unit: Unit, entry: str, lifted: tuple[str, ...]) -> str:
         [
             *writer.structs_of(),
             *writer.lifts(lifted),
-            *map(writer.function, reached(unit, entry)),
+            *map(writer.function, call_graph(unit, entry)),
         ]
     )
     used = set(re.findall(r"\bdual_(\w+)\(", body))
@@ -189,7 +189,7 @@ class _Text:
     def dual(self) -> bool:
         return self.kind.name == "real" and not self.kind.pointer and self.kind.length is None
 
-    def lifted(self) -> str:
+    def lift(self) -> str:
         return self.text if self.dual else f"dual_of({self.text})"
 
 
@@ -330,7 +330,7 @@ class _Writer:
         if not to.dual:
             return f"{to.text} {of.sign} {self.as_kind(of.value, to.kind)}"
         value = of.value if of.sign == "=" else Binary(of.sign[0], of.to, of.value)
-        return f"{to.text} = {self.value(value).lifted()}"
+        return f"{to.text} = {self.value(value).lift()}"
 
     # --- expressions
 
@@ -338,7 +338,7 @@ class _Writer:
         """A value where one of a type is needed."""
         found = self.value(of)
         if _Text("", kind).dual:
-            return found.lifted()
+            return found.lift()
         if found.dual:
             raise TranslationError(f"{found.text} where it has no derivative")
         return found.text
@@ -364,7 +364,7 @@ class _Writer:
                 one, two = self.value(then), self.value(other)
                 holds = self.holds(condition)
                 if one.dual or two.dual:
-                    return _Text(f"({holds} ? {one.lifted()} : {two.lifted()})", REAL)
+                    return _Text(f"({holds} ? {one.lift()} : {two.lift()})", REAL)
                 return _Text(f"({holds} ? {one.text} : {two.text})", one.kind)
             case Member(inner, name):
                 whole = self.value(inner)
@@ -411,11 +411,11 @@ class _Writer:
             return _Text(f"({one.text} {sign} {two.text})", kind)
         if sign in COMPARED:
             name, order = COMPARED[sign]
-            text = order.format(one.lifted(), two.lifted())
+            text = order.format(one.lift(), two.lift())
             return _Text(f"{'!' * (name[0] == '!')}dual_{name.removeprefix('!')}({text})", INT)
         if sign not in ARITHMETIC:
             raise TranslationError(f"{sign} of numbers that have a derivative")
-        return _Text(f"dual_{ARITHMETIC[sign]}({one.lifted()}, {two.lifted()})", REAL)
+        return _Text(f"dual_{ARITHMETIC[sign]}({one.lift()}, {two.lift()})", REAL)
 
     def call(self, of: Call) -> _Text:
         if not of.name.startswith("r_"):
@@ -431,5 +431,5 @@ class _Writer:
         if name not in FUNCTIONS or any(each.dual for each in found[1:]):
             raise TranslationError(f"{of.name} has no derivative here")
         return _Text(
-            f"dual_{name}({', '.join([found[0].lifted(), *(e.text for e in found[1:])])})", REAL
+            f"dual_{name}({', '.join([found[0].lift(), *(e.text for e in found[1:])])})", REAL
         )
