@@ -313,9 +313,24 @@ class Motor:
         temperature: npt.ArrayLike | None = None,
         enabled: npt.ArrayLike | None = None,
         transmitted: npt.ArrayLike | None = None,
+        start: dict[str, float] | None = None,
         out: _Floats | None = None,
         strict: bool = True,
     ) -> tuple[_Floats, _Floats]: ...
+    def gradient(
+        self,
+        current: npt.ArrayLike,
+        dt: npt.ArrayLike,
+        position: npt.ArrayLike,
+        velocity: npt.ArrayLike,
+        *,
+        by: str = "input",
+        load: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        enabled: npt.ArrayLike | None = None,
+        transmitted: npt.ArrayLike | None = None,
+        strict: bool = True,
+    ) -> _Floats: ...
     def contact(self) -> tuple[FrictionModel, list[str]]: ...
     def adopt(self, other: Motor) -> None: ...
     def settings(self) -> dict[str, Any]: ...

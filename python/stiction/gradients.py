@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -12,9 +12,12 @@ from ._support import given
 from ._support.arrays import FloatArray
 from ._support.frozen import path_of
 from ._support.given import number
+from ._support.keys import choice
+from .catalogue import laws
 from .errors import InputError
 from .motor import Motor
 from .plant import Plant
+from .residual.effort import NO_TIME
 
 __all__ = ["Simulation", "over_batch"]
 
@@ -26,10 +29,8 @@ KEYWORDS: Final = {
     "body.weight_n": "weight",
 }
 """What a motor is made with, by the path of its parameter."""
-ALIKE: Final = 1e-9
-"""Share of the range of motion within which a run over a window is the same as the simulation."""
-DIVISIONS: Final = (2, 4, 8, 16, 32)
-"""Of a sample too long for a derivative by the input, that are tried for one that is not."""
+BODY: Final = ("position", "velocity")
+"""What a run starts from beside what its contact brings along."""
 
 
 class Simulation:
@@ -46,28 +47,43 @@ class Simulation:
         Paths, or bare last words where they are unique.
     dt : float
         s.
+    start : sequence of str, optional
+        What a run starts from in place of the state of the motor: "position", "velocity", start
+        values of the law. Where one of the law is among them, those that are not are 0.
 
     Attributes
     ----------
     paths : tuple of str
+        Of the parameters, and then ``start.position`` and so on: by these it is differentiated.
 
     Raises
     ------
     InputError
-        No machine, an unknown path, one twice, a plant that is no motor.
+        No machine, an unknown path, one twice, a plant that is no motor; a law that has no such
+        start value.
     """
 
-    def __init__(self, machine: Plant | Motor, parameters: Sequence[str], dt: float) -> None:
+    def __init__(
+        self,
+        machine: Plant | Motor,
+        parameters: Sequence[str],
+        dt: float,
+        start: Sequence[str] = (),
+    ) -> None:
         given.instance(machine, Plant | Motor, "simulate: machine", "a Plant or a Motor")
         plant = machine if isinstance(machine, Plant) else None
         self._motor = machine.motor() if isinstance(machine, Plant) else machine.copy()
         self._dt = number(dt, "simulate: dt")
         names = given.names(parameters, "simulate: parameters")
         known = self._motor.parameters
-        self.paths = tuple(path_of(name, known, "simulate: parameters: ") for name in names)
-        if len(set(self.paths)) < len(self.paths):
+        self._own = tuple(path_of(name, known, "simulate: parameters: ") for name in names)
+        if len(set(self._own)) < len(self._own):
             raise InputError("simulate: parameters: one is named twice; drop one of its names")
-        self._following = _following(plant, self.paths)
+        self._following = _following(plant, self._own)
+        law = laws()[self._motor.friction_settings()[0]]
+        there = (*BODY, *(each.name for each in law.start))
+        self._start = tuple(choice(name, there, "simulate: start") for name in start)
+        self.paths = (*self._own, *(f"start.{name}" for name in self._start))
 
     def run(
         self, values: FloatArray, current: FloatArray, load: FloatArray
@@ -76,8 +92,8 @@ class Simulation:
 
         Parameters
         ----------
-        values : numpy.ndarray, shape (parameters,)
-            SI.
+        values : numpy.ndarray, shape (paths,)
+            SI; of the parameters, and then of the start.
         current, load : numpy.ndarray, shape (n,)
 
         Returns
@@ -98,7 +114,7 @@ class Simulation:
         position: FloatArray,
         velocity: FloatArray,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Derivatives of Σ position·x + velocity·v by parameters, input and load.
+        """Derivatives of Σ position·x + velocity·v by parameters and start, input and load.
 
         Parameters
         ----------
@@ -110,18 +126,15 @@ class Simulation:
         Raises
         ------
         InputError
-            As for ``by_effort`` and ``to_effort``; weights of the velocity with ``by_input``.
+            As for ``Motor.gradient``.
         """
         of_values = self.by_parameters(values, current, load, position, velocity)
         if not by_input:
             return of_values, np.zeros_like(current), np.zeros_like(load)
-        if np.any(velocity):
-            raise InputError(
-                "simulate: the velocity has no derivative by input or load; let the loss hang on "
-                "the position, or freeze the input"
-            )
-        of_load = self.by_effort(values, current, load, position)
-        return of_values, of_load * self.to_effort(values, current), of_load
+        motor = self._with(values)
+        weights = (current, self._dt, position, velocity)
+        of_input = motor.gradient(*weights, load=load)
+        return of_values, of_input, motor.gradient(*weights, load=load, by="load")
 
     def by_parameters(
         self,
@@ -131,7 +144,7 @@ class Simulation:
         position: FloatArray,
         velocity: FloatArray,
     ) -> FloatArray:
-        """Derivatives of Σ position·x + velocity·v by the parameters.
+        """Derivatives of Σ position·x + velocity·v by the parameters and by the start.
 
         Parameters
         ----------
@@ -142,70 +155,19 @@ class Simulation:
 
         Returns
         -------
-        numpy.ndarray, shape (parameters,)
+        numpy.ndarray, shape (paths,)
         """
         if not self.paths:
             return np.zeros(0)
         every = [*self.paths, *(path for path, _, _ in self._following)]
-        moved, turned = self._with(values).sensitivity(current, self._dt, every, load=load)
+        moved, turned = self._with(values).sensitivity(
+            current, self._dt, every, load=load, start=self._contact(self._begun(values))
+        )
         each = moved @ position + turned @ velocity
         found: FloatArray = each[: len(self.paths)]
         for own, (_, place, factor) in zip(each[len(self.paths) :], self._following, strict=True):
             found[place] += factor * own
         return found
-
-    def by_effort(
-        self, values: FloatArray, current: FloatArray, load: FloatArray, position: FloatArray
-    ) -> FloatArray:
-        """Derivatives of Σ position·x by an effort that is added to each sample.
-
-        One run over dual numbers for every sixteen samples or so: its cost grows with the square of
-        their number.
-
-        Parameters
-        ----------
-        values, current, load, position
-            As for ``by_parameters``.
-
-        Returns
-        -------
-        numpy.ndarray, shape (n,)
-            Per N·m or N.
-
-        Raises
-        ------
-        InputError
-            A machine whose state at the start no window takes over, or so stiff that a window
-            divides its samples in another way: the derivative would be that of another run.
-        """
-        motor, samples = self._with(values), len(current)
-        self._check(motor, current, load)
-        motion = _motion_of(motor, current, load, self._dt)
-        found = motor.shoot_response(motion, position, samples, samples)
-        return found[:, 0]
-
-    def to_effort(self, values: FloatArray, current: FloatArray) -> FloatArray:
-        """Effort per unit of input in each sample: the gain, 0 beyond the limit of the drive."""
-        motor = self._with(values)
-        if motor.settings()["servo"] is not None:
-            raise InputError("simulate: the goals of a servo have no exact derivative; freeze them")
-        held = np.abs(current) <= motor.settings()["input_limit"]
-        return np.where(held, motor.settings()["torque_constant"], 0.0)
-
-    def _check(self, motor: Motor, current: FloatArray, load: FloatArray) -> None:
-        """Refuses a window that does not run as the simulation does."""
-        if _runs_alike(motor, current, load, self._dt):
-            return
-        remedy = "freeze the input"
-        for parts in DIVISIONS:
-            dt = self._dt / parts
-            if _runs_alike(motor, np.repeat(current, parts), np.repeat(load, parts), dt):
-                remedy = f"give dt = {dt:.3g} or shorter, or freeze the input"
-                break
-        raise InputError(
-            f"simulate: with dt = {self._dt:.3g} this contact is so stiff, or starts in such a "
-            f"state, that a derivative by the input would be that of another run; {remedy}"
-        )
 
     def _with(self, values: FloatArray) -> Motor:
         """The motor with these values, in its state."""
@@ -213,7 +175,7 @@ class Simulation:
         law, keywords = self._motor.friction_settings()
         effects = {name: dict(each) for name, each in settings["effects"].items()}
         numbers = np.asarray(values, dtype=np.float64).tolist()
-        given_values = dict(zip(self.paths, numbers, strict=True))
+        given_values = dict(zip(self._own, numbers, strict=False))
         for path, place, factor in self._following:
             given_values[path] = factor * numbers[place]
         for path, value in given_values.items():
@@ -235,7 +197,42 @@ class Simulation:
             )
             state["ambient"] = motor.state["ambient"]
         motor.state = state
+        begun = self._begun(values)
+        if begun:
+            self._begin(motor, begun)
         return motor
+
+    def _begun(self, values: FloatArray) -> dict[str, float]:
+        """Values of the start, by name."""
+        numbers = np.asarray(values, dtype=np.float64).tolist()
+        return dict(zip(self._start, numbers[len(self._own) :], strict=True))
+
+    @staticmethod
+    def _contact(begun: Mapping[str, float]) -> dict[str, float] | None:
+        """What the contact brings along; None where it keeps its own state."""
+        return {name: value for name, value in begun.items() if name not in BODY} or None
+
+    def _begin(self, motor: Motor, begun: Mapping[str, float]) -> None:
+        """Puts a motor where a run starts, its second mass with it; all else stays as it is."""
+        state = motor.state
+        clock = {"time": state["time"], "path": state["path"]}
+        motor.reset(state["position"], state["velocity"], **clock)
+        ambient = motor.state["ambient"]
+        position, velocity = (begun.get(name, state[name]) for name in BODY)
+        motor.reset(position, velocity, **clock)
+        moved = {
+            "position": position,
+            "velocity": velocity,
+            "second_position": state["second_position"] + (position - state["position"]),
+            "second_velocity": state["second_velocity"] + (velocity - state["velocity"]),
+            "ambient": state["ambient"] + (motor.state["ambient"] - ambient),
+        }
+        contact = self._contact(begun)
+        if contact is not None:
+            still = Motion([position] * 2, [0.0], NO_TIME)
+            motor.follow(still, start=contact, strict=False)
+            moved |= motor.friction_state()
+        motor.state = {**state, **moved}
 
 
 def _following(plant: Plant | None, paths: Sequence[str]) -> list[tuple[str, int, float]]:
@@ -251,24 +248,6 @@ def _following(plant: Plant | None, paths: Sequence[str]) -> list[tuple[str, int
         and path.partition(".")[2] not in plant.friction.parameters
         and f"friction.{follows[0]}" in paths
     ]
-
-
-def _motion_of(motor: Motor, current: FloatArray, load: FloatArray, dt: float) -> Motion:
-    """Samples from where a motor stands; a window takes its velocity from the first positions."""
-    begin, speed = float(motor.state["position"]), float(motor.state["velocity"])
-    positions = begin + speed * dt * np.minimum(np.arange(len(current) + 1.0), 1.0)
-    return Motion(positions, current, dt, load=load)
-
-
-def _runs_alike(motor: Motor, current: FloatArray, load: FloatArray, dt: float) -> bool:
-    """Whether a window over these samples ends where the simulation of them does."""
-    run = motor.copy().simulate(current, dt, load=load, outputs=["position"]).position
-    last = np.zeros(len(current))
-    last[-1] = 1.0
-    motion = _motion_of(motor, current, load, dt)
-    shot = float(motor.shoot(motion, last, len(current))[0])
-    gone = float(run[-1]) - float(motor.state["position"])
-    return abs(shot - gone) <= ALIKE * max(float(np.ptp(run)), abs(gone), 1e-300)
 
 
 def over_batch(

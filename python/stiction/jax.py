@@ -22,13 +22,15 @@ def simulate(
     dt: float,
     *,
     load: Any = None,
+    start: Mapping[str, Any] | None = None,
 ) -> tuple[Any, Any]:
     """Simulate held inputs from the state of a machine, with exact derivatives.
 
     Position and velocity are those of ``Motor.simulate``. Backwards, derivatives by the parameters
-    are those of ``Motor.sensitivity``, breaking away and sticking included; by input and load they
-    are exact as well, of the position alone. It goes through ``jit``, ``grad`` and ``vmap`` (over
-    parameters, inputs and loads), and not through ``jvp`` or a second derivative.
+    and by the start are those of ``Motor.sensitivity``, by input and load those of
+    ``Motor.gradient``, breaking away and sticking included. It goes through ``jit``, ``grad`` and
+    ``vmap`` (over parameters, start, inputs and loads), and not through ``jvp`` or a second
+    derivative.
 
     Parameters
     ----------
@@ -38,11 +40,15 @@ def simulate(
         SI values by path, or by the bare last word where it is unique; every other parameter is the
         machine's.
     current : array_like, shape (n,)
-        Input of the drive, held over each sample.
+        Input of the drive, of a servo its goal, held over each sample.
     dt : float
         s.
     load : array_like, shape (n,), optional
         External effort, N·m or N, positive along +x.
+    start : mapping of str to array_like of shape (), optional
+        What the run starts from in place of the state of the machine: ``position`` and
+        ``velocity``, and what the contact brings along, such as ``force`` (``st.laws()`` lists the
+        start values of each law); a contact of which one is given has the others at 0.
 
     Returns
     -------
@@ -52,20 +58,21 @@ def simulate(
     Raises
     ------
     InputError
-        An unknown parameter, a plant that is no motor; JAX is missing, or counts in single
-        precision. Inside a compiled function refusals come as errors of JAX that hold the sentence:
-        values out of bounds, a derivative of the velocity by the input, or one by the input of a
-        contact too stiff for its samples.
+        An unknown parameter or start value, a plant that is no motor; JAX is missing, or counts in
+        single precision. Inside a compiled function refusals come as errors of JAX that hold the
+        sentence, such as values out of bounds.
 
     Notes
     -----
-    A derivative by the input costs a run over dual numbers for every sixteen samples; where inputs
-    are constants none is computed. By the starting state there is none.
+    Derivatives by the input cost a run over dual numbers for every eight samples, and as many by
+    the load; where both are constants none is computed.
     """
     jax = _jax()
     values = given.mapping(parameters, "simulate: parameters", "values by name")
-    simulation = Simulation(machine, list(values), dt)
-    vector = jax.numpy.asarray([jax.numpy.asarray(each, dtype=float) for each in values.values()])
+    begun = given.mapping(start or {}, "simulate: start", "values by name")
+    simulation = Simulation(machine, list(values), dt, list(begun))
+    numbers = [*values.values(), *begun.values()]
+    vector = jax.numpy.asarray([jax.numpy.asarray(each, dtype=float) for each in numbers])
     inputs = jax.numpy.asarray(current, dtype=float)
     loads = jax.numpy.zeros_like(inputs) if load is None else jax.numpy.asarray(load, dtype=float)
     if inputs.ndim != 1 or loads.shape != inputs.shape:
@@ -74,7 +81,7 @@ def simulate(
             "each, and go over batches with jax.vmap"
         )
     position, velocity = _differentiable(jax, simulation)(
-        vector.reshape(len(values)), inputs, loads
+        vector.reshape(len(numbers)), inputs, loads
     )
     return position, velocity
 

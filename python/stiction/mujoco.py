@@ -108,7 +108,9 @@ class Joint:
         before = float(data.qvel[self._dof])
         at = float(data.qpos[self._place])
         motor.state = {**motor.state, "position": at, "velocity": before}
-        _, velocity = motor.step(effort, span)
+        # What no motor gives loads the contact from outside: friction may go with it.
+        drive = float(data.qfrc_actuator[self._dof])
+        _, velocity = motor.step(drive, span, load=effort - drive)
         return motor, velocity, effort - inertia * (velocity - before) / span
 
 

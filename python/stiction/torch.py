@@ -22,11 +22,12 @@ def simulate(
     dt: float,
     *,
     load: Any = None,
+    start: Mapping[str, Any] | None = None,
 ) -> tuple[Any, Any]:
     """Simulate held inputs from the state of a machine, with exact derivatives.
 
-    As ``stiction.jax.simulate``: by parameters those of ``Motor.sensitivity``, by input and load of
-    the position alone.
+    As ``stiction.jax.simulate``: by parameters and start those of ``Motor.sensitivity``, by input
+    and load those of ``Motor.gradient``.
 
     Parameters
     ----------
@@ -41,6 +42,8 @@ def simulate(
         s.
     load : torch.Tensor, shape (n,) or (batch, n), optional
         External effort, N·m or N, positive along +x.
+    start : mapping of str to torch.Tensor of shape () or (batch,), or float, optional
+        What the run starts from, as for ``stiction.jax.simulate``.
 
     Returns
     -------
@@ -50,19 +53,20 @@ def simulate(
     Raises
     ------
     InputError
-        An unknown parameter or one out of bounds, a plant that is no motor, shapes that do not fit,
-        a derivative that there is none of (see ``stiction.jax.simulate``); PyTorch is missing.
+        An unknown parameter or start value, one out of bounds, a plant that is no motor, shapes
+        that do not fit; PyTorch is missing.
     """
     torch = _torch()
     values = given.mapping(parameters, "simulate: parameters", "values by name")
-    simulation = Simulation(machine, list(values), dt)
+    begun = given.mapping(start or {}, "simulate: start", "values by name")
+    simulation = Simulation(machine, list(values), dt, list(begun))
 
     def tensor(each: Any) -> Any:
         return torch.as_tensor(each, dtype=torch.float64, device="cpu")
 
     inputs = tensor(current)
     loads = torch.zeros_like(inputs) if load is None else tensor(load)
-    own = [tensor(each) for each in values.values()]
+    own = [tensor(each) for each in (*values.values(), *begun.values())]
     try:
         batch = torch.broadcast_shapes(
             inputs.shape[:-1], loads.shape[:-1], *(each.shape for each in own)

@@ -175,17 +175,61 @@ def test_gravity_is_given_to_the_bodies_of_a_simulator():
     assert found.runs[1].error < 0.004
 
 
-@pytest.mark.parametrize(
-    ("machine", "words"),
-    [
-        (plant(drive={"kind": "servo", "proportional": 10.0, "supply_v": 12.0,
-                      "resistance_ohm": 2.0, "torque_constant": 0.5}), "a goal"),
-    ],
-)  # fmt: skip
-@pytest.mark.parametrize("target", ["mujoco", "table"])
-def test_what_cannot_be_run_is_a_sentence(machine, words, target):
-    with pytest.raises(st.InputError, match=f"{target} is not run for a servo: .*{words}"):
-        machine.export(target).check(session(plant()))
+SERVO = {
+    "kind": "servo", "proportional": 3.0, "supply_v": 12.0, "resistance_ohm": 3.7,
+    "torque_constant": 2.0,
+}  # fmt: skip
+HANGING = {"inertia": 0.015, "payload_kg": 0.8, "payload_m": 0.1}
+LATE = ({"name": "input_delay", "delay": 0.03}, {"name": "goal_rate_limit", "slowness": 0.2})
+GEAR = {"name": "load_dependent_friction", "drive": 0.2, "back_drive": 0.4}
+
+
+@pytest.fixture(scope="module")
+def servo():
+    """An arm on a servo, its logs as such servos give them: uneven, other gains, let go of."""
+    friction = {"law": "coulomb", "coulomb": 0.1, "viscous": 0.01}
+    own = plant(friction, *LATE, GEAR, drive=SERVO, body=HANGING, sensor={"counts_per_rev": 4096})
+    logs = []
+    for seed, (gain, role) in enumerate(((3.0, "train"), (1.5, "train"), (2.0, "test"))):
+        source = np.random.default_rng(seed)
+        time = 0.01 * (np.arange(500) + 0.2 * source.uniform(size=500))
+        goal = np.where(time < 1.0, 0.0, 0.8 * np.sin((3.0 + seed) * (time - 1.0)))
+        enabled = (time < 4.0).astype(float)
+        told = st.Plant.from_dict(own.to_dict() | {"drive": {**SERVO, "proportional": gain}})
+        moved = told.simulate(goal[:-1], np.diff(time), enabled=enabled[:-1]).position
+        count = 2.0 * np.pi / 4096
+        read = np.round(np.concatenate([[0.0], moved]) / count) * count
+        kept = {"enabled": enabled, "settings": {"proportional": gain}, "role": role}
+        logs.append(st.Recording(time, goal, read, kind=f"{seed}", **kept))
+    return own, st.Session(logs)
+
+
+def test_a_servo_moves_by_its_goal_from_the_start_of_a_recording_to_its_end(servo):
+    shutil.which("cc") or pytest.skip("no C compiler is installed")
+    own, recorded = servo
+    found = own.export("fmu").check(recorded)
+    assert found.of == "position over whole recordings, by the goal alone"
+    assert found.unit == "rad"
+    # Nothing is left but the counts of the encoder: the FMU is the plant.
+    assert found.whole < 2.0 * np.pi / 4096
+    assert found.runs[0].error == pytest.approx(found.whole, rel=1e-4)
+    assert found.without > 10.0 * found.whole
+    assert shares(found)[0] > 0.9999
+
+
+def test_friction_that_goes_with_the_load_is_in_the_callback_of_a_servo(servo):
+    pytest.importorskip("mujoco")
+    own, recorded = servo
+    native, with_callback = shares(own.export("mujoco").check(recorded))
+    assert with_callback > 0.98
+    assert native < with_callback
+
+
+@pytest.mark.parametrize("target", ["c", "table", "urdf"])
+def test_a_curve_says_nothing_of_a_servo(servo, target):
+    own, recorded = servo
+    with pytest.raises(st.InputError, match=f"{target} is not run for a servo: .* nobody measured"):
+        own.export(target).check(recorded)
 
 
 def test_a_package_or_compiler_that_is_missing_is_a_sentence(cogged, monkeypatch):

@@ -91,6 +91,29 @@ def test_effects_at_the_contact_act(effect):
     assert np.max(off) < 0.02 * np.max(np.abs(run.velocity))
 
 
+@pytest.mark.parametrize(
+    "own",
+    [
+        plant("load_dependent", coulomb=0.1, drive=0.2, back_drive=0.4),
+        plant("dahl", [{"name": "load_dependent_friction", "drive": 0.3, "back_drive": 0.6}]),
+    ],
+)
+def test_what_no_motor_gives_loads_the_contact(own):
+    model = one("implicitfast")
+    joint = attach(model, "j", own)
+    loads = 0.3 * np.sin(0.02 * np.arange(len(efforts())))
+    data, velocities = mujoco.MjData(model), []
+    for effort, load in zip(efforts(), loads, strict=True):
+        data.ctrl[0], data.qfrc_applied[0] = effort, load
+        step(model, data, [joint])
+        velocities.append(float(data.qvel[0]))
+    run = own.motor().simulate(efforts(), DT, load=loads)
+    unloaded = own.motor().simulate(efforts() + loads, DT)
+    greatest = np.max(np.abs(run.velocity))
+    assert np.max(np.abs(unloaded.velocity - run.velocity)) > 0.05 * greatest
+    assert np.max(np.abs(velocities - run.velocity)) < 1e-8 * greatest
+
+
 def test_a_joint_at_half_its_level_rests_to_the_last_bit_where_frictionloss_creeps():
     own, native = one(), one(more='frictionloss="0.35"')
     joint = attach(own, "j", plant("coulomb", coulomb=0.35))

@@ -38,6 +38,17 @@ def test_gradcheck_passes_by_input_and_load(law):
     assert torch.autograd.gradcheck(run, given, eps=1e-6, atol=1e-8, rtol=1e-4)
 
 
+def test_gradcheck_passes_by_the_start():
+    inputs = torch.tensor(0.2 * current(40), dtype=torch.float64)
+
+    def run(position, velocity, force):
+        begun = {"position": position, "velocity": velocity, "force": force}
+        return simulate(machine("lugre"), {}, inputs, DT, start=begun)
+
+    given = double([0.4, 0.1]), double(-0.6), double(0.1)
+    assert torch.autograd.gradcheck(run, given, eps=1e-7, atol=1e-6, rtol=1e-4)
+
+
 def test_it_is_the_simulation_of_the_motor():
     position, velocity = simulate(machine("coulomb"), {}, current(), DT)
     run = machine("coulomb").simulate(current(), DT)

@@ -32,7 +32,9 @@ pub mod simulate;
 
 pub use batch::{ensemble, lanes};
 pub use friction::elements::symbol;
-pub use inverse::{follow, kernel, least_squares, sensitivity, shoot, signatures, smoothing};
+pub use inverse::{
+    follow, gradient, kernel, least_squares, sensitivity, shoot, signatures, smoothing,
+};
 pub use math::{dual, exponential, scalar, trig, wave};
 pub use plant::{body, drive, effects, sensor, servo};
 pub use simulate::{model, motor, segments};

@@ -13,7 +13,14 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..plant.stated import Effect
 
-__all__ = ["ContactSource", "collapse_blank_lines", "numbers_of", "plant_numbers", "prologue"]
+__all__ = [
+    "ContactSource",
+    "collapse_blank_lines",
+    "numbers_of",
+    "plant_numbers",
+    "prologue",
+    "structures_of",
+]
 
 TYPES: Final = re.compile(r"^typedef [^;{}]*(?:\{(?:(?!^\}).)*\})? ?(stiction_\w+);\n", re.M | re.S)
 MATHS: Final = re.compile(r"\br_(\w+)\(")
@@ -116,6 +123,12 @@ def numbers_of(effect: Effect) -> dict[str, float]:
 def collapse_blank_lines(text: str) -> str:
     """A text as a compiler gets it, with no more than one empty line at a time."""
     return re.sub(r"\n{3,}", "\n\n", re.sub(r"^# ", "#", text, flags=re.M))
+
+
+def structures_of(header: str) -> str:
+    """What a contact remembers, of a header, without what is the compiler's business."""
+    reversals = re.findall(r"^#define STICTION_REVERSALS \d+\n", header, re.M)
+    return "".join([*reversals, *(found[0] for found in TYPES.finditer(header))])
 
 
 def prologue(text: str) -> str:

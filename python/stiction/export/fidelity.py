@@ -22,11 +22,13 @@ from ..recording.recording import recordings_of
 from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
-from .registry import targets
+from .registry import Target, targets
 from .runs import EffortRun, MotionRun, Windows
+from .speeds import greatest_speed
 
 if TYPE_CHECKING:
     from ..plant import Plant
+    from ..residual.loop_form import LoopForm
     from ..residual.shooting import ShootingForm
     from ..residual.weak_form import Start, WeakForm
     from .made import Export
@@ -179,17 +181,53 @@ class Bench:
         target = targets().get(made.target)
         if target is None or target.runs is None:
             raise InputError(f"{made.target}: there is nothing that could be run; read its files")
-        if self._plant.servo:
-            raise InputError(
-                f"{made.target} is not run for a servo: its input is a goal, and along the "
-                "measured motion what its loop does, late or limited, is taken for friction; "
-                "simulate the goal of a recording, and compare positions"
-            )
         runs = target.runs(made, self._plant)
         moving = [run for run in runs if isinstance(run, MotionRun)]
+        if self._plant.servo:
+            if not moving:
+                raise InputError(
+                    f"{made.target} is not run for a servo: it says which effort a motion takes, "
+                    "and nobody measured that of a servo; along the measured motion what its loop "
+                    "does, late or limited, would be taken for friction. fmu and mujoco move, and "
+                    "are run"
+                )
+            return self._by_loop(made, target, moving)
         if moving:
             return self._by_motion(made.target, moving)
         return self._by_effort(made.target, [run for run in runs if isinstance(run, EffortRun)])
+
+    def _by_loop(self, made: Export, target: Target, runs: Sequence[MotionRun]) -> Fidelity:
+        """Whole recordings of a servo from its goal alone, as a fit and a diagnosis see them."""
+        errors: list[list[FloatArray]] = [[] for _ in range(1 + len(runs))]
+        without = []
+        for form, mask in self._looped:
+            # Gains and payload may be those of the recording.
+            own = form.own(self._plant)
+            there = made if own == self._plant else target.write(own, _speed(made))
+            assert target.runs is not None
+            moved = [run for run in target.runs(there, own) if isinstance(run, MotionRun)]
+            windows = Windows(
+                form.dt,
+                form.readings,
+                form.input,
+                form.load[:-1],
+                np.zeros(1, dtype=np.intp),
+                len(form.input),
+                form.clock,
+                form.path,
+                steps=None if isinstance(form.steps, float) else form.steps,
+                enabled=None if form.enabled is None else form.enabled[:-1] != 0.0,
+                pace=form.velocity_at_start,
+            )
+            reached = [form.reaches(self._plant), *(run.positions(windows)[0] for run in moved)]
+            for found, position in zip(errors, reached, strict=True):
+                found.append((form.readings[1:] - position)[mask])
+            if self._plant.effects:
+                without.append((form.readings[1:] - form.reaches(self._bare))[mask])
+        together = [np.concatenate(own) for own in errors]
+        of = "position over whole recordings, by the goal alone"
+        unit = self._plant.position_unit
+        return self._told(made.target, of, runs, together, without, unit=unit)
 
     def _by_motion(self, target: str, runs: Sequence[MotionRun]) -> Fidelity:
         if not can_be_shot(self._plant, [row.form for row, _ in self._along]):
@@ -261,6 +299,8 @@ class Bench:
         runs: Sequence[MotionRun | EffortRun],
         errors: Sequence[FloatArray],
         without: Sequence[FloatArray],
+        *,
+        unit: str = "",
     ) -> Fidelity:
         if not len(errors[0]):
             raise InputError(f"{target}: nothing moves in the rows that are held out; give others")
@@ -279,7 +319,7 @@ class Bench:
         return Fidelity(
             target,
             of,
-            self._plant.effort_unit,
+            unit or self._plant.effort_unit,
             len(errors[0]),
             float(np.sqrt(whole)),
             None if before is None else float(np.sqrt(before)),
@@ -328,6 +368,16 @@ class Bench:
         return found  # type: ignore[return-value]  # a horizon makes them simulated ones
 
     @cached_property
+    def _looped(self) -> list[tuple[LoopForm, Mask]]:
+        """All of a servo, simulated as a whole, and the rows that test."""
+        found = []
+        for index, form in enumerate(self._seen(Through(loop=True))):
+            mask = rows_of(form, self._recordings[index], index, self._test)
+            if mask.any():
+                found.append((form, mask))
+        return found  # type: ignore[return-value]  # a loop makes them such
+
+    @cached_property
     def _bare(self) -> Plant:
         """The plant without its effects, fitted to the rows that train."""
         return fit(replace(self._plant, effects=()), self._recordings).plant
@@ -335,6 +385,12 @@ class Bench:
     @cached_property
     def _bare_starts(self) -> list[Start]:
         return [self._begun(self._bare, row) for row, _ in self._along]
+
+
+def _speed(made: Export) -> float:
+    """That an export was made for; one that was put together by hand has none of its own."""
+    assert made.plant is not None
+    return greatest_speed(made.plant, made.speed)
 
 
 def _share(before: float | None, power: float, whole: float) -> float | None:

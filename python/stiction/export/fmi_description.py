@@ -45,6 +45,8 @@ class Variable:
         None of what is computed.
     of : str
         Of a derivative, whose it is.
+    by : tuple of str
+        Variables that it goes by.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Variable:
     description: str
     start: float | None = None
     of: str = ""
+    by: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,11 @@ class Described:
     description: str
     variables: tuple[Variable, ...]
     exchanges: bool
+
+    def by(self, each: Variable) -> tuple[Variable, ...]:
+        """What a variable of model exchange goes by, in the order of all variables."""
+        there = self.exchanges and each.by
+        return tuple(other for other in self.variables if there and other.name in each.by)
 
     def index(self, name: str) -> int:
         """Place of a variable, from 1 on."""
@@ -119,14 +127,21 @@ def fmi3(of: Described) -> str:
             own["start"] = repr(each.start) if each.unit else str(bool(each.start)).lower()
         ET.SubElement(variables, "Float64" if each.unit else "Boolean", own)
     structure = ET.SubElement(root, "ModelStructure")
+
+    def add(tag: str, each: Variable) -> None:
+        own = {"valueReference": str(each.reference)}
+        if of.by(each):
+            own["dependencies"] = " ".join(str(other.reference) for other in of.by(each))
+        ET.SubElement(structure, tag, own)
+
     lists = [("Output", of.outputs), ("ContinuousStateDerivative", of.derivatives)]
     lists.append(("InitialUnknown", of.unknown))
     for tag, listed in lists:
         for each in listed:
-            ET.SubElement(structure, tag, {"valueReference": str(each.reference)})
+            add(tag, each)
     for each in of.variables:
         if each.name in INDICATORS:
-            ET.SubElement(structure, "EventIndicator", {"valueReference": str(each.reference)})
+            add("EventIndicator", each)
     return _text(root)
 
 
@@ -162,8 +177,12 @@ def fmi2(of: Described) -> str:
     for tag, listed in lists:
         if listed:
             inside = ET.SubElement(structure, tag)
-            for place in sorted(of.index(each.name) for each in listed):
-                ET.SubElement(inside, "Unknown", {"index": str(place)})
+            for each in sorted(listed, key=lambda each: of.index(each.name)):
+                own = {"index": str(of.index(each.name))}
+                if of.by(each):
+                    places = [str(of.index(other.name)) for other in of.by(each)]
+                    own["dependencies"] = " ".join(places)
+                ET.SubElement(inside, "Unknown", own)
     return _text(root)
 
 
@@ -193,6 +212,8 @@ def _interfaces(root: ET.Element, of: Described, state: dict[str, str], *, sourc
     found = [ET.SubElement(root, "ModelExchange", own)] if of.exchanges else []
     found.append(ET.SubElement(root, "CoSimulation", own | step))
     for each in found:
+        if each.tag == "ModelExchange":
+            each.set(f"providesDirectionalDerivative{'' if sources else 's'}", "true")
         if each.tag == "ModelExchange" and not sources:
             each.set("needsCompletedIntegratorStep", "true")
         if sources:

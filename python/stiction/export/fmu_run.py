@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["run_windows"]
 
-INPUT, LOAD, POSITION, VELOCITY = 1, 2, 4, 5
+INPUT, LOAD, POSITION, VELOCITY, ENABLED = 1, 2, 4, 5, 12
 """Numbers of variables."""
 
 
@@ -48,9 +48,12 @@ def run_windows(archive: bytes, windows: Windows) -> FloatArray:
         pace = windows.velocity(start)
         machine.follow(start - row, windows.dt, position[row:], inputs[row:], loads[row:], pace)
         row, kept = start, machine.state()
+        time = start * windows.dt
         for sample in range(windows.length):
             at = start + sample
-            machine.step(at * windows.dt, windows.dt, inputs[at], loads[at])
+            machine.enable(windows.drives(at))
+            machine.step(time, windows.duration(at), inputs[at], loads[at])
+            time += windows.duration(at)
             found[window, sample] = machine.get(POSITION)
         machine.go_back(kept)
     machine.free()
@@ -88,6 +91,10 @@ class _Instance:
         one, number = ctypes.c_size_t(1), ctypes.c_uint32(variable)
         wanted = ctypes.c_double(value)
         self._call("fmi3SetFloat64", ctypes.byref(number), one, ctypes.byref(wanted), one)
+
+    def enable(self, drives: bool) -> None:
+        one, number, on = ctypes.c_size_t(1), ctypes.c_uint32(ENABLED), ctypes.c_bool(drives)
+        self._call("fmi3SetBoolean", ctypes.byref(number), one, ctypes.byref(on), one)
 
     def get(self, variable: int) -> float:
         one, number, found = ctypes.c_size_t(1), ctypes.c_uint32(variable), ctypes.c_double()

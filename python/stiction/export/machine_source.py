@@ -8,8 +8,17 @@ from typing import TYPE_CHECKING, Any, Final
 
 from .._support.wording import commas
 from ..plant.drive import servo_numbers
-from .contact_source import ContactSource, collapse_blank_lines, plant_numbers, prologue
+from .contact_source import (
+    ContactSource,
+    collapse_blank_lines,
+    plant_numbers,
+    prologue,
+    structures_of,
+)
 from .fragments import Fragments
+from .translation import call_graph, dual_of, parse
+from .translation.names import nodes
+from .translation.tree import Member, Unit
 
 if TYPE_CHECKING:
     from ..plant import Plant
@@ -50,6 +59,8 @@ class MachineSource:
         Whether anything goes by it.
     watches : bool
         Whether there is an event where friction begins to fall.
+    goes_by : frozenset of str
+        Of "position" and "time", by what the acceleration goes.
     """
 
     source: str
@@ -58,6 +69,7 @@ class MachineSource:
     states: int
     temperature: bool
     watches: bool
+    goes_by: frozenset[str]
 
     @property
     def exchanges(self) -> bool:
@@ -78,22 +90,31 @@ class MachineSource:
         sampled = _sampled(plant, fragments)
         if sampled:
             fragments.flags.discard("EXCHANGES")
-        names = (
-            "init",
-            "way",
-            "machine",
-            "running",
-            *(() if sampled else ("exchange",)),
-            *interface,
-        )
-        text = contact.source + "\n" + "\n".join(map(fragments.expand, names))
+        own = () if sampled else ("exchange",)
+        text = contact.source
+        for name in ("init", "way", "machine", "running", *own):
+            text += "\n" + fragments.expand(name)
+        goes_by: frozenset[str] = frozenset()
+        if not sampled:
+            parts = map(fragments.expand, ("machine", "exchange"))
+            unit = parse("\n".join((structures_of(contact.types), contact.source, *parts)))
+            text += dual_of(unit, "evaluate", ("stiction_machine", "acting"))
+            goes_by = _goes_by(unit, fragments)
+        for name in interface:
+            text += "\n" + fragments.expand(name)
         types = "#define STICTION_REAL double\n" + contact.types
         source = types + prologue(text) + fragments.constants(text) + "\n" + text
         states = 3 if "BENDS" in fragments.flags else 2
         temperature = "TEMPERATURE" in fragments.flags
         watches = fragments.numbers["WATCHED"] > 0.0
         return cls(
-            collapse_blank_lines(source), contact.effects, sampled, states, temperature, watches
+            collapse_blank_lines(source),
+            contact.effects,
+            sampled,
+            states,
+            temperature,
+            watches,
+            goes_by,
         )
 
 
@@ -127,6 +148,32 @@ def _divides(plant: Plant, numbers: dict[str, Any]) -> dict[str, float]:
         "FALLING": falls / inertia,
         "WATCHED": watched,
     }
+
+
+BOOKKEEPING: Final = frozenset(
+    {"evaluate", "resistance", "placed", "dry_now", "ambient", "reach", "accept"}
+)
+"""Functions that lead a contact to where it is asked for, whatever goes by that."""
+NEEDS: Final = {
+    "position": frozenset({"position", "displacement", "path", "moved"}),
+    "time": frozenset({"time", "dt"}),
+}
+"""Fields that a function reads which goes by position or time."""
+
+
+def _goes_by(unit: Unit, fragments: Fragments) -> frozenset[str]:
+    """What the equations read beside velocity, bristles and what acts on the machine."""
+    fields = {
+        node.name
+        for function in call_graph(unit, "evaluate")
+        if function.name not in BOOKKEEPING
+        for node in nodes(function.body)
+        if isinstance(node, Member)
+    }
+    # Bristles have a state of their own: their contact is not led along a way.
+    fields -= {"displacement", "dt"} if "BENDS" in fragments.flags else set()
+    fields |= {"position"} if fragments.numbers["GRAVITY"] != 0.0 else set()
+    return frozenset(name for name, read in NEEDS.items() if fields & read)
 
 
 def _sampled(plant: Plant, fragments: Fragments) -> str:

@@ -36,6 +36,8 @@ class Export:
         What stands in the files, in SI.
     plant : Plant or None
         That it was made of.
+    speed : float or None
+        Greatest speed that it was made for, rad/s or m/s.
     """
 
     target: str
@@ -44,6 +46,7 @@ class Export:
     lost: tuple[str, ...] = ()
     numbers: Mapping[str, float] = field(default_factory=dict)
     plant: Plant | None = field(default=None, repr=False)
+    speed: float | None = field(default=None, repr=False)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write the files.
@@ -79,8 +82,8 @@ class Export:
         Three errors are compared over the same rows: of the target as it was written, of the whole
         plant as stiction simulates it, and of the plant without its effects, its law fitted again
         to the rows that train. A target that moves is started from the measured state and runs for
-        0.3 s at a time; of one that is a curve, the effort along the measured motion is compared,
-        where the machine moves.
+        0.3 s at a time, a servo from the start of a recording to its end, by the goal alone; of one
+        that is a curve, the effort along the measured motion is compared, where the machine moves.
 
         Parameters
         ----------

@@ -68,4 +68,4 @@ def export(plant: Plant, to: str, *, speed: float | None) -> Export:
     known = targets()
     at = greatest_speed(plant, speed)
     made = known[choice(to, tuple(known), f"{plant.source}: to")].write(plant, at)
-    return replace(made, plant=plant)
+    return replace(made, plant=plant, speed=at)

@@ -38,6 +38,12 @@ class Windows:
         Of the session at the first row, s and rad or m.
     contact : dict or None
         Friction state there, None where it was never moved.
+    steps : numpy.ndarray, shape (rows - 1,), or None
+        Duration of each sample, s, where they differ.
+    enabled : numpy.ndarray of bool, shape (rows - 1,), or None
+        Whether the drive was on; None where it was all the time.
+    pace : float or None
+        Velocity at the first row where more is known than its neighbours, rad/s or m/s.
     """
 
     dt: float
@@ -49,9 +55,22 @@ class Windows:
     clock: float = 0.0
     path: float = 0.0
     contact: Start = None
+    steps: FloatArray | None = None
+    enabled: np.ndarray[Any, np.dtype[np.bool_]] | None = None
+    pace: float | None = None
+
+    def duration(self, sample: int) -> float:
+        """Of a sample, s."""
+        return self.dt if self.steps is None else float(self.steps[sample])
+
+    def drives(self, sample: int) -> bool:
+        """Whether the drive is on during a sample."""
+        return self.enabled is None or bool(self.enabled[sample])
 
     def velocity(self, row: int) -> float:
         """Measured velocity at a row, the slope between its neighbours; rad/s or m/s."""
+        if row == 0 and self.pace is not None:
+            return self.pace
         first, last = max(row - 1, 0), min(row + 1, len(self.position) - 1)
         return float(self.position[last] - self.position[first]) / (self.dt * (last - first))
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import Final
 
-from .contact_source import MATHS, TYPES
+from .contact_source import MATHS, structures_of
 from .firmware import Firmware
 from .translation import parse, rust_of
 
@@ -185,9 +184,7 @@ def crate_files(
     held, lost : sequence of str
         What the plant has and what is not in it, a sentence each.
     """
-    types = "".join(found[0] for found in TYPES.finditer(made.header))
-    reversals = "".join(re.findall(r"^#define STICTION_REVERSALS \d+\n", made.header, re.M))
-    plant = PLANT + rust_of(parse(reversals + types + made.body)) + "\n"
+    plant = PLANT + rust_of(parse(structures_of(made.header) + made.body)) + "\n"
     public = "Contact, Observer" if made.steps else "Observer"
     unit, effort = units
     lib = HEAD.format(

@@ -261,7 +261,7 @@ where
                 let passage = Passage { displacement, friction: efforts.friction, span };
                 machine.effects.remember(&passage);
             }
-            let input = arriving(&mut way, inputs.at(k), duration);
+            let input = arriving(&mut way, inputs.at(k), None, duration);
             let Efforts { driven, ambient, .. } = &mut efforts;
             if direct {
                 machine.reach_directly(&at, input, load, &mut channels, [driven, ambient]);

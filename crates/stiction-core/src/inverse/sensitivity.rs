@@ -4,7 +4,7 @@ use crate::inverse::follow::{Efforts, SeesAbout};
 use crate::inverse::kernel::RowKernel;
 use crate::inverse::traces::{Filling, ONCE, Stretch, Traces, put_all};
 use crate::math::scalar::{COLUMNS, Dual, Scalar};
-use crate::plant::{Machine, Run};
+use crate::plant::{Budget, Machine, Run};
 use crate::simulate::motor::{MotorSpec, Rows, Running};
 use crate::support::error::{Error, Result};
 pub use crate::support::motion::MeasuredMotion;
@@ -64,11 +64,36 @@ pub struct Start<'a> {
     /// … but for its friction where start values of the law are given: that depends on them and on
     /// the parameters of the law.
     pub primed: Option<&'a [f64]>,
+    /// Whether position and velocity, `start.position` and `start.velocity`, are among them: a
+    /// measured motion has its own.
+    pub free: bool,
+}
+
+/// Names of what a run that follows nothing starts with, beside its friction.
+const BODY: [&str; 2] = ["position", "velocity"];
+
+impl Start<'_> {
+    /// Names of all start values that it can be differentiated by.
+    fn names(self, spec: &MotorSpec) -> impl Iterator<Item = String> {
+        let own = if self.primed.is_some() { spec.friction.record.start } else { &[] };
+        let body = if self.free { &BODY[..] } else { &[] };
+        own.iter()
+            .map(|own| own.name)
+            .chain(body.iter().copied())
+            .map(|name| format!("start.{name}"))
+    }
+
+    /// Their values.
+    fn values(self) -> impl Iterator<Item = f64> {
+        let run = &self.running.run;
+        let body = [run.position, run.velocity].into_iter().take(if self.free { 2 } else { 0 });
+        self.primed.unwrap_or_default().iter().copied().chain(body)
+    }
 }
 
 impl<'a> From<&'a Running<f64>> for Start<'a> {
     fn from(running: &'a Running<f64>) -> Self {
-        Self { running, primed: None }
+        Self { running, primed: None, free: false }
     }
 }
 
@@ -79,16 +104,29 @@ pub(crate) fn seeded(
     parameters: &[f64],
     places: &[usize],
 ) -> Running<Dual> {
-    let all = parameters.iter().chain(start.primed.into_iter().flatten());
-    let mut values: Vec<Dual> = all.map(|value| Dual::constant(*value)).collect();
+    let all = parameters.iter().copied().chain(start.values());
+    let mut values: Vec<Dual> = all.map(Dual::constant).collect();
     for (column, place) in places.iter().enumerate() {
         values[*place] = Dual::variable(values[*place].re(), column);
     }
-    let (values, primed) = values.split_at(parameters.len());
+    let (values, rest) = values.split_at(parameters.len());
+    let (primed, body) = rest.split_at(start.primed.map_or(0, <[f64]>::len));
     let mut running = Running::new(spec, values);
     running.resume(start.running);
     if start.primed.is_some() {
         running.state = running.law.primed(primed);
+    }
+    if let [position, velocity] = body {
+        let run = &mut running.run;
+        if start.primed.is_some() {
+            run.budget = Budget::unknown();
+        }
+        run.position = *position;
+        run.velocity = *velocity;
+        // The whole machine stands elsewhere, or moves faster: a second mass with it.
+        run.second_position += *position - position.re();
+        run.second_velocity += *velocity - velocity.re();
+        running.machine.refresh(run);
     }
     running
 }
@@ -102,9 +140,7 @@ pub(crate) fn passes(
     mut visit: impl FnMut(&mut Running<Dual>, usize, usize) -> Result<()>,
 ) -> Result<()> {
     let (mut known, values): (Vec<String>, Vec<f64>) = spec.parameters().into_iter().unzip();
-    if start.primed.is_some() {
-        known.extend(spec.friction.record.start.iter().map(|own| format!("start.{}", own.name)));
-    }
+    known.extend(start.names(spec));
     let wanted = paths
         .iter()
         .map(|path| {
@@ -123,7 +159,8 @@ pub(crate) fn passes(
     Ok(())
 }
 
-/// Simulates from the state of a motor, which depends on no parameter, and differentiates by the parameters at these paths.
+/// Simulates from the state of a motor and differentiates by the parameters at these paths, and by
+/// position and velocity at the start: `start.position`, `start.velocity`.
 pub fn sensitivity(
     spec: &MotorSpec,
     start: &Running<f64>,
@@ -135,14 +172,14 @@ pub fn sensitivity(
     let zeros = || vec![0.0; paths.len() * inputs.len()];
     let mut result = Sensitivity { position: zeros(), velocity: zeros() };
     let rows = [&mut *result.position, &mut *result.velocity];
-    sensitivity_into(spec, start, inputs, around, dt, paths, rows)?;
+    sensitivity_into(spec, start.into(), inputs, around, dt, paths, rows)?;
     Ok(result)
 }
 
 /// The same, into rows laid out as those of [`Sensitivity`]: of position, and of velocity.
 pub fn sensitivity_into(
     spec: &MotorSpec,
-    start: &Running<f64>,
+    start: Start<'_>,
     inputs: &[f64],
     around: Surroundings<'_>,
     dt: PerSample<'_>,
@@ -156,7 +193,8 @@ pub fn sensitivity_into(
             return Err(Error::Length { name: "out".to_owned(), given, wanted });
         }
     }
-    passes(spec, start.into(), paths, |running, first, number| {
+    let start = Start { free: true, ..start };
+    passes(spec, start, paths, |running, first, number| {
         let own = first * samples..(first + number) * samples;
         let (position, velocity) = (&mut position[own.clone()], &mut velocity[own]);
         let rows = [position, velocity].map(|rows| rows.chunks_mut(samples.max(1)).collect());

@@ -114,6 +114,23 @@ impl<S: Scalar> DelayLine<S> {
         self.delay.chain(mean, (before - self.arrived) / dt)
     }
 
+    /// Derivatives by the inputs, of those by what comes out in each sample: an input is a part of
+    /// the mean of a sample as long as it comes out during it.
+    fn carry_back(&self, late: &[f64], spans: &[f64]) -> Vec<f64> {
+        let mut edges = vec![0.0];
+        for (k, span) in spans.iter().enumerate() {
+            edges.push(edges[k] + span);
+        }
+        let delay = self.delay.re();
+        let carried = |k: usize| {
+            let (from, to) = (edges[k] + delay, edges[k + 1] + delay);
+            let first = edges.partition_point(|edge| *edge <= from) - 1;
+            let during = (first..late.len()).take_while(|j| edges[*j] < to);
+            during.map(|j| late[j] * (to.min(edges[j + 1]) - from.max(edges[j])) / spans[j]).sum()
+        };
+        (0..late.len()).map(carried).collect()
+    }
+
     fn mean_of_next(&mut self, dt: f64) -> f64 {
         let nearly = ROUND_OFF * dt.min(self.delay.re());
         let mut left = dt;
@@ -268,13 +285,14 @@ impl<S: Scalar> Way<S> {
         }
     }
 
-    /// Mean of what arrives during a sample.
+    /// Mean of what arrives during a sample, with something that comes to it behind the delay.
     #[inline]
-    pub fn pass(&mut self, input: f64, dt: f64) -> S {
+    pub fn pass(&mut self, input: f64, more: Option<S>, dt: f64) -> S {
         let late = match &mut self.delay {
             None => S::constant(input),
             Some(line) => line.pass(input, dt),
         };
+        let late = more.map_or(late, |more| late + more);
         let limited = match &mut self.rate {
             None => late,
             Some(rate) => rate.pass(late, dt),
@@ -282,6 +300,14 @@ impl<S: Scalar> Way<S> {
         match &mut self.lag {
             None => limited,
             Some(lag) => lag.pass(limited, dt),
+        }
+    }
+
+    /// Derivatives by the inputs, of those by what comes out of the delay in each sample.
+    pub fn carry_back(&self, late: Vec<f64>, spans: &[f64]) -> Vec<f64> {
+        match &self.delay {
+            None => late,
+            Some(line) => line.carry_back(&late, spans),
         }
     }
 
@@ -339,12 +365,18 @@ impl<S: Scalar> Way<S> {
     }
 }
 
-/// What of the input reaches the drive during a sample.
+/// What of the input reaches the drive during a sample, with something that comes to it behind a
+/// delay.
 #[inline(always)]
-pub(crate) fn arriving<S: Scalar>(way: &mut Option<&mut Way<S>>, input: f64, dt: f64) -> S {
+pub(crate) fn arriving<S: Scalar>(
+    way: &mut Option<&mut Way<S>>,
+    input: f64,
+    more: Option<S>,
+    dt: f64,
+) -> S {
     match way {
-        None => S::constant(input),
-        Some(way) => way.pass(input, dt),
+        None => more.map_or(S::constant(input), |more| more + input),
+        Some(way) => way.pass(input, more, dt),
     }
 }
 

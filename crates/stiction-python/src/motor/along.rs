@@ -2,6 +2,7 @@
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use stiction_core::gradient::{Acting, Weighted, gradient};
 use stiction_core::motor::Motor as Core;
 use stiction_core::sensitivity::{
     EffortSensitivity, follow_columns, follow_sensitivity, sensitivity_into,
@@ -11,8 +12,7 @@ use stiction_core::signatures::{signature_columns, signatures};
 use super::Motor;
 use crate::arguments::{Names, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, rising, target};
-use crate::error::{IntoPython, is_finite, outcome};
-use crate::interrupt::detached;
+use crate::error::{IntoPython, input_error, is_finite, outcome};
 use crate::kernel::RowKernel;
 use crate::motion::Motion;
 
@@ -317,15 +317,19 @@ impl Motor {
         PyArray1::from_vec(py, values).reshape([gains_of(&list), rows])
     }
 
-    /// Exact derivatives of position and velocity by parameters, from the present state; the motor
-    /// is left as it was.
+    /// Exact derivatives of position and velocity by parameters and by the state at the start, which
+    /// is the present one; the motor is left as it was.
     ///
     /// Parameters
     /// ----------
     /// current, dt, load, temperature, enabled, transmitted
     ///     As for ``simulate``.
     /// parameters : sequence of str
-    ///     Whole paths, as ``parameters`` of the motor has them.
+    ///     Whole paths, as ``parameters`` of the motor has them; ``start.position`` and
+    ///     ``start.velocity`` are those of the motor, with its second mass; where a start is given its
+    ///     values too: ``start.force`` and so on.
+    /// start : dict of str to float, optional
+    ///     As for ``follow``: what the contact brings along in place of its own state.
     /// out : numpy.ndarray, shape (2, parameters, n), optional
     ///     Array to fill, C-contiguous float64.
     /// strict : bool
@@ -341,7 +345,7 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``simulate``; an unknown path, an ``out`` that is no such array.
-    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, transmitted=None, out=None, strict=true))]
+    #[pyo3(signature = (current, dt, parameters, *, load=None, temperature=None, enabled=None, transmitted=None, start=None, out=None, strict=true))]
     #[allow(clippy::type_complexity)] // a pair of arrays, as Python gets it
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn sensitivity<'py>(
@@ -354,6 +358,7 @@ impl Motor {
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
         transmitted: Option<&Bound<'py, PyAny>>,
+        start: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
         strict: bool,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
@@ -373,14 +378,75 @@ impl Motor {
         let mut rows = target("out", &array, &shape)?;
         let both = rows.as_slice_mut()?;
         let (position, velocity) = both.split_at_mut(both.len() / 2);
-        let core = self.core(py)?.clone();
-        let result = detached(py, || {
+        let result = self.beside(py, start, |spec, start| {
             let rows = [position, velocity];
-            sensitivity_into(core.spec(), core.running(), current, around, dt, &parameters, rows)
+            sensitivity_into(spec, start, current, around, dt, &parameters, rows)
         })?;
         result.or_input_error(py)?;
         outcome(py, strict, "derivatives", [&*both])?;
         drop(rows);
         Ok((array.get_item(0)?, array.get_item(1)?))
+    }
+
+    /// Exact derivatives of Σ position·x + velocity·v over the samples of a simulation by its inputs
+    /// and by its loads, from the present state; the motor is left as it was.
+    ///
+    /// Parameters
+    /// ----------
+    /// current, dt, load, temperature, enabled, transmitted
+    ///     As for ``simulate``.
+    /// position, velocity : array_like, shape (n,)
+    ///     Weights of what ``simulate`` gives after each sample.
+    /// by : {"input", "load"}
+    ///     By the input of each sample, of a servo its goal, or by its load.
+    /// strict : bool
+    ///     As for ``follow``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (n,)
+    ///     Per unit of the input, or per N·m or N. Its cost grows with the square of n.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     As for ``simulate``; weights that are not as many as the samples.
+    #[pyo3(signature = (current, dt, position, velocity, *, by="input", load=None, temperature=None, enabled=None, transmitted=None, strict=true))]
+    #[allow(clippy::too_many_arguments)] // keywords of the Python class
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        current: &Bound<'py, PyAny>,
+        dt: &Bound<'py, PyAny>,
+        position: &Bound<'py, PyAny>,
+        velocity: &Bound<'py, PyAny>,
+        by: &str,
+        load: Option<&Bound<'py, PyAny>>,
+        temperature: Option<&Bound<'py, PyAny>>,
+        enabled: Option<&Bound<'py, PyAny>>,
+        transmitted: Option<&Bound<'py, PyAny>>,
+        strict: bool,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let by = match by {
+            "input" => Acting::Input,
+            "load" => Acting::Load,
+            other => {
+                return Err(input_error(py, format!("by = '{other}'; give 'input' or 'load'")));
+            }
+        };
+        let current = one_row("current", current)?;
+        let shape = current.shape().to_vec();
+        let dt = Each::steps("dt", dt, &shape)?;
+        let around = Around::read([load, temperature, enabled, transmitted], &shape)?;
+        let (position, velocity) = (one_row("position", position)?, one_row("velocity", velocity)?);
+        let current = current.as_slice()?;
+        let weights = Weighted { position: position.as_slice()?, velocity: velocity.as_slice()? };
+        let (dt, around) = (dt.per_sample()?, around.surroundings()?);
+        let found = self.beside(py, None, |spec, start| {
+            gradient(spec, start.running, current, around, dt, weights, by)
+        })?;
+        let found = found.or_input_error(py)?;
+        outcome(py, strict, "derivatives", [found.as_slice()])?;
+        Ok(PyArray1::from_vec(py, found))
     }
 }

@@ -103,7 +103,8 @@ impl Motor {
         let primed = self.start(py, start)?;
         let core = self.core(py)?.clone();
         detached(py, || {
-            work(core.spec(), Start { running: core.running(), primed: primed.as_deref() })
+            let primed = primed.as_deref();
+            work(core.spec(), Start { running: core.running(), primed, free: false })
         })
     }
 }

@@ -90,9 +90,97 @@ static void discard(instance *it)
 
 #ifdef EXCHANGES
 
-static evaluation evaluated(const instance *it)
+static evaluation evaluated(const instance *given)
 {
+    const instance *it = given;
+    instance begun;
+    if (!it->now.begun) {
+        begun = *given;
+        begin(&begun);
+        it = &begun;
+    }
     return evaluate(&it->now.at, it->now.y, it->now.time - it->now.since, &it->now.by);
+}
+
+/* How all that is computed changes where these variables do. Ahead is where the machine goes; of
+ * one that rests without sticking either side is as good. */
+static dual_evaluation differentiated(const instance *given, const real *seed)
+{
+    instance it = *given;
+    const evaluation rates = evaluated(given);
+    const real passed = it.now.time - it.now.since;
+    dual_stiction_machine at;
+    dual_acting by = lift_acting(&it.now.by);
+    dual y[3];
+    int k;
+    if (!it.now.begun) {
+        begin(&it);
+    }
+    at = lift_stiction_machine(&it.now.at);
+    for (k = 0; k < 3; ++k) {
+        y[k] = (dual){it.now.y[k], k < STATES ? rates.rate[k] : R(0), R(0)};
+    }
+    if (y[0].ahead == R(0)) {
+        y[0].ahead = y[1].ahead == R(0) ? R(1) : y[1].ahead;
+    }
+    y[0].tangent = seed[POSITION_NOW];
+    y[1].tangent = seed[VELOCITY];
+    y[2].tangent = seed[BRISTLES];
+    by.input.tangent = seed[INPUT];
+    by.load.tangent = seed[LOAD];
+    by.temperature.tangent = seed[TEMPERATURE_NOW];
+    return dual_evaluate(&at, y, (dual){passed, R(1), seed[TIME_NOW]}, &by);
+}
+
+/* The derivative of variables in a direction of others; why not, where there is none. */
+static const char *derive(const instance *it, const uint32_t *unknown, size_t unknowns,
+                          const uint32_t *known, size_t knowns, const double *seed, double *found)
+{
+    real direction[FALL_INDICATOR + 1] = {0};
+    dual_evaluation all;
+    size_t k;
+    if (!it->exchanges) {
+        return "directional derivatives are those of model exchange";
+    }
+    for (k = 0; k < knowns; ++k) {
+        const uint32_t which = known[k];
+        if (which > VELOCITY && which != BRISTLES) {
+            return "there is no derivative by this variable";
+        }
+        direction[which] = seed[k];
+    }
+    all = differentiated(it, direction);
+    for (k = 0; k < unknowns; ++k) {
+        switch (unknown[k]) {
+        case POSITION_NOW:
+            found[k] = direction[POSITION_NOW];
+            break;
+        case VELOCITY:
+            found[k] = all.rate[0].tangent;
+            break;
+        case FRICTION:
+            found[k] = all.friction.tangent;
+            break;
+        case ACCELERATION:
+            found[k] = all.rate[1].tangent;
+            break;
+        case BENDING:
+            found[k] = all.rate[STATES - 1].tangent;
+            break;
+        case INDICATOR:
+            found[k] = all.indicator[0].tangent;
+            break;
+        case FALL_INDICATOR:
+            found[k] = all.indicator[INDICATORS - 1].tangent;
+            break;
+        case MEASURED: /* in steps */
+            found[k] = R(0);
+            break;
+        default:
+            return "there is no derivative of this variable";
+        }
+    }
+    return NULL;
 }
 
 static void completed(instance *it)

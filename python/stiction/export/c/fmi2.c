@@ -240,8 +240,19 @@ EXPORTED fmi2Status fmi2DoStep(fmi2Component it, fmi2Real time, fmi2Real span, f
         return told2(it, #name " is not offered by this FMU"); \
     }
 typedef const fmi2ValueReference *references2;
+#ifdef EXCHANGES
+EXPORTED fmi2Status fmi2GetDirectionalDerivative(fmi2Component it, references2 unknown,
+                                                 size_t unknowns, references2 known,
+                                                 size_t knowns, const fmi2Real seed[],
+                                                 fmi2Real found[])
+{
+    const char *why = derive(it, unknown, unknowns, known, knowns, seed, found);
+    return why ? told2(it, why) : fmi2OK;
+}
+#else
 NOT_THERE2(fmi2GetDirectionalDerivative, references2 a, size_t b, references2 c, size_t d,
            const fmi2Real *e, fmi2Real *f)
+#endif
 NOT_THERE2(fmi2SetRealInputDerivatives, references2 a, size_t b, const fmi2Integer *c,
            const fmi2Real *d)
 NOT_THERE2(fmi2GetRealOutputDerivatives, references2 a, size_t b, const fmi2Integer *c,

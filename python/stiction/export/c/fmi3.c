@@ -225,7 +225,7 @@ NO_TYPE(UInt64, uint64_t)
 NO_VARIABLES(fmi3GetString, fmi3String)
 NO_VARIABLES(fmi3SetString, const fmi3String)
 
-/* Nor are there clocks, binaries, dependencies to be asked for, derivatives or partitions. */
+/* Nor are there clocks, binaries, dependencies to be asked for or partitions. */
 #define NOT_THERE(name, ...) \
     EXPORTED fmi3Status name(fmi3Instance it, __VA_ARGS__) \
     { \
@@ -240,8 +240,21 @@ NOT_THERE(fmi3SetClock, references a, size_t b, const bool *c)
 NOT_THERE(fmi3GetNumberOfVariableDependencies, fmi3ValueReference a, size_t *b)
 NOT_THERE(fmi3GetVariableDependencies, fmi3ValueReference a, size_t *b, fmi3ValueReference *c,
           size_t *d, int *e, size_t f)
+#ifdef EXCHANGES
+EXPORTED fmi3Status fmi3GetDirectionalDerivative(fmi3Instance it, references unknown,
+                                                 size_t unknowns, references known, size_t knowns,
+                                                 const fmi3Float64 seed[], size_t seeds,
+                                                 fmi3Float64 found[], size_t many)
+{
+    const char *why = knowns != seeds || unknowns != many
+        ? "as many values as variables are needed"
+        : derive(it, unknown, unknowns, known, knowns, seed, found);
+    return why ? told3(it, why) : fmi3OK;
+}
+#else
 NOT_THERE(fmi3GetDirectionalDerivative, references a, size_t b, references c, size_t d,
           const fmi3Float64 *e, size_t f, fmi3Float64 *g, size_t h)
+#endif
 NOT_THERE(fmi3GetAdjointDerivative, references a, size_t b, references c, size_t d,
           const fmi3Float64 *e, size_t f, fmi3Float64 *g, size_t h)
 NOT_THERE(fmi3GetIntervalDecimal, references a, size_t b, fmi3Float64 *c, int *d)

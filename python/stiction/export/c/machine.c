@@ -115,7 +115,7 @@ static real dry(stiction_state *s, motion m, int mode)
 {
 #ifdef RIGID
     const real speed = r_fabs(m.velocity);
-    m.velocity = (real)mode * (speed > R(1e-300) ? speed : R(1e-300));
+    m.velocity = (real)mode * (speed != R(0) ? speed : R(1e-300));
 #else
     (void)mode;
 #endif

@@ -20,7 +20,7 @@ typedef struct {
 #endif
 #ifdef USES_WAY
 #ifdef APART
-#define WAY(span) (m->dt > R(0) ? m->displacement * ((span) / m->dt) : R(0))
+#define WAY(span) (m->dt > R(0) ? m->displacement * ((span) / m->dt) : m->displacement)
 #else
 #define WAY(span) (m->velocity * (span))
 #endif

@@ -96,28 +96,33 @@ def _variables(plant: Plant, made: MachineSource) -> tuple[Variable, ...]:
     ]
     if made.temperature:
         found.append(Variable("temperature", 3, "input", "degC", "of the contact", 20.0))
+    rate, bristles = f"{place}/s", ("bristle_force",) if made.states == 3 else ()
+    inputs = tuple(each.name for each in found if each.causality == "input")
+    # What the equation of motion goes by.
+    by = (*inputs, "velocity", *bristles, *made.goes_by)
+    resists = "effort that resists positive motion"
     found += [
-        Variable("position", 4, "output", place, "of the body", 0.0),
-        Variable("velocity", 5, "output", f"{place}/s", "of the body", 0.0, of="position"),
-        Variable("friction", 6, "output", effort, "effort that resists positive motion"),
+        Variable("position", 4, "output", place, "of the body", 0.0, by=("position",)),
+        Variable("velocity", 5, "output", rate, "of the body", 0.0, "position", ("velocity",)),
+        Variable("friction", 6, "output", effort, resists, by=by),
     ]
     if plant.count:
-        found.append(Variable("measured", 11, "output", place, "position as the encoder shows it"))
+        shown = "position as the encoder shows it"
+        found.append(Variable("measured", 11, "output", place, shown, by=("position",)))
     if made.exchanges:
-        found.append(
-            Variable("acceleration", 7, "local", f"{place}/s2", "of the body", of="velocity")
-        )
-        if made.states == 3:
+        second, words = f"{rate}2", "of the body"
+        found.append(Variable("acceleration", 7, "local", second, words, None, "velocity", by))
+        if bristles:
+            own, pace = ("velocity", *bristles), f"{effort}/s"
             found += [
                 Variable("bristle_force", 8, "local", effort, "of the bristles", 0.0),
-                Variable(
-                    "bristle_rate", 9, "local", f"{effort}/s", "of their force", of="bristle_force"
-                ),
+                Variable("bristle_rate", 9, "local", pace, "of their force", None, *bristles, own),
             ]
-        found.append(Variable("event_indicator", 10, "local", effort, "of stick, slip, reversal"))
+        words = "of stick, slip, reversal"
+        found.append(Variable("event_indicator", 10, "local", effort, words, by=by))
         if made.watches:
-            speed = f"{place}/s"
-            found.append(Variable("fall_indicator", 13, "local", speed, "of the fall of friction"))
+            words = "of the fall of friction"
+            found.append(Variable("fall_indicator", 13, "local", rate, words, by=("velocity",)))
     return tuple(found)
 
 
@@ -132,8 +137,7 @@ def _lost(plant: Plant, made: MachineSource, binary: object) -> tuple[str, ...]:
     lost = beside(plant, lambda each: each.name in made.effects, limited=True, yielding=True)
     exchange = () if made.exchanges else (f"model exchange: {made.sampled}; co-simulation has it",)
     none = (f"a binary: {binary}; fmpy compile makes one",) if isinstance(binary, str) else ()
-    derivatives = ("directional derivatives: a solver makes its own",) if made.exchanges else ()
-    return (*lost, *exchange, *derivatives, *none)
+    return (*lost, *exchange, *none)
 
 
 def _page(plant: Plant, held: tuple[str, ...], lost: tuple[str, ...]) -> str:

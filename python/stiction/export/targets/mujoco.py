@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 SUMMARY = "MJCF of a joint and its motor: friction or LuGre, cogging, limit, delay, servo"
 LONGEST_STEP: Final = 1e-3
 """Of the simulator, s: a sample is divided into as few equal steps as are no longer."""
-
 ROUNDING: Final = 1e-6
 """Of a sample."""
+DRIVES: Final = 1
+"""Group of actuators that is switched off with the drive."""
 
 
 def write(plant: Plant, speed: float) -> Export:
@@ -135,8 +136,11 @@ def _gone(
     step: Callable[[Any, int | None], None],
 ) -> FloatArray:
     """Where a model gets to in windows; ``step`` gets the row where a new one starts."""
-    parts = max(1, int(np.ceil(windows.dt / LONGEST_STEP - 1e-6)))
+    longest = windows.dt if windows.steps is None else float(np.max(windows.steps))
+    parts = max(1, int(np.ceil(longest / LONGEST_STEP - 1e-6)))
     model.opt.timestep = windows.dt / parts
+    # A drive that is off does nothing; the bristles of a joint are a motor too, and stay.
+    model.actuator_group[0] = DRIVES
     data = mujoco.MjData(model)
     found = np.empty((len(windows.starts), windows.length))
     for window, start in enumerate(windows.starts.tolist()):
@@ -151,6 +155,8 @@ def _gone(
         row: int | None = start
         for sample in range(windows.length):
             data.ctrl[0] = windows.input[start + sample]
+            model.opt.timestep = windows.duration(start + sample) / parts
+            model.opt.disableactuator = 0 if windows.drives(start + sample) else 1 << DRIVES
             for _ in range(parts):
                 borne = float(gravity_effort(plant, data.qpos)[0])
                 data.qfrc_applied[0] = windows.load[start + sample] - borne

@@ -30,6 +30,7 @@ __all__ = [
     "find_changes",
     "length",
     "names",
+    "nodes",
     "root",
     "type_name",
     "uses",
@@ -81,14 +82,15 @@ def root(of: Expression) -> str | None:
             return of.name if isinstance(of, Name) else None
 
 
-def _nodes(of: Any) -> Iterator[Any]:
+def nodes(of: Any) -> Iterator[Any]:
+    """What a part of C consists of, itself included, and all that is in it."""
     if isinstance(of, tuple):
         for each in of:
-            yield from _nodes(each)
+            yield from nodes(each)
     elif is_dataclass(of):
         yield of
         for part in fields(of):
-            yield from _nodes(getattr(of, part.name))
+            yield from nodes(getattr(of, part.name))
 
 
 def find_changes(
@@ -96,7 +98,7 @@ def find_changes(
 ) -> set[str]:
     """Variables of a function that it writes to after they were declared."""
     places: list[Expression] = []
-    for node in _nodes(function.body):
+    for node in nodes(function.body):
         if isinstance(node, Assign):
             places.append(node.to)
         elif isinstance(node, Call):
@@ -128,18 +130,18 @@ class Counters:
         """Of a function."""
         declared = {
             node.name
-            for node in _nodes(function.body)
+            for node in nodes(function.body)
             if isinstance(node, Declare) and node.value is None and node.kind == Kind("int")
         }
         inside: dict[str, int] = {}
         spoilt = set()
-        for loop in _nodes(function.body):
+        for loop in nodes(function.body):
             name = cls._counts(loop)
             if name is None:
                 continue
             assert isinstance(loop, For)
             inside[name] = inside.get(name, 0) + uses(loop, name)
-            if any(isinstance(n, Assign) and root(n.to) == name for n in _nodes(loop.body)):
+            if any(isinstance(n, Assign) and root(n.to) == name for n in nodes(loop.body)):
                 spoilt.add(name)
         whole = {name: uses(function.body, name) for name in declared}
         names = {n for n in declared - spoilt if n in inside and inside[n] == whole[n]}
@@ -172,12 +174,12 @@ class Counters:
 
 def names(of: Expression) -> set[str]:
     """All variables that an expression names."""
-    return {node.name for node in _nodes(of) if isinstance(node, Name)}
+    return {node.name for node in nodes(of) if isinstance(node, Name)}
 
 
 def uses(of: Any, name: str) -> int:
     """How often a variable is named."""
-    return sum(node == Name(name) for node in _nodes(of))
+    return sum(node == Name(name) for node in nodes(of))
 
 
 def length(text: str) -> str:

@@ -269,6 +269,8 @@ class _Parser:
 
     def statement(self) -> list[Statement]:
         word = self.here().text
+        if word == "{":
+            return [self.block()]
         if word == "if":
             return [self.branch()]
         if word == "while":
@@ -296,9 +298,13 @@ class _Parser:
             return [Discard(name)]
         if self.begins_type():
             return list(self.declarations())
-        found = self.action()
+        found: list[Statement] = [self.action()]
+        while isinstance(found[0], Assign) and self.takes("="):
+            # The last of them is set first.
+            outer, to = found[0], found[0].value
+            found[:1] = [Assign("=", to, self.expression()), Assign(outer.sign, outer.to, to)]
         self.expect(";")
-        return [found]
+        return found
 
     def branch(self) -> If:
         self.expect("if")
@@ -347,12 +353,19 @@ class _Parser:
             kind = self.pointer(base)
             name = self.name()
             kind = self.array(kind)
-            value = self.expression() if self.takes("=") else None
+            value = self.initial(kind) if self.takes("=") else None
             found.append(Declare(name, kind, value))
             if not self.takes(","):
                 break
         self.expect(";")
         return found
+
+    def initial(self, kind: Kind) -> Expression:
+        if not self.takes("{"):
+            return self.expression()
+        self.expect("0")
+        self.expect("}")
+        return Zero(Kind(kind.name))
 
     # --- expressions
 

@@ -138,6 +138,13 @@ impl<S: Scalar> Running<S> {
         with_law!(&self.law, |law| Division::of(machine, law, dt, longest, self.integrator))
     }
 
+    /// Takes what acts beside input and load in a sample to the run.
+    pub(crate) fn surround(&mut self, around: &Surroundings<'_>, sample: usize) {
+        self.run.transmitted = around.transmitted_at(sample);
+        self.run.temperature = around.temperature_at(sample);
+        self.run.enabled = around.enabled_at(sample);
+    }
+
     /// One sample, at the temperature of the run.
     #[inline]
     pub fn step(&mut self, input: f64, load: f64, dt: f64) -> Result<()> {
@@ -150,6 +157,18 @@ impl<S: Scalar> Running<S> {
         &mut self,
         input: f64,
         load: f64,
+        dt: f64,
+        meter: &mut Meter,
+    ) -> Result<()> {
+        self.step_moved((input, load), [None, None], dt, meter)
+    }
+
+    /// The same with something added to input and load that may depend on parameters.
+    #[inline(always)]
+    pub(crate) fn step_moved(
+        &mut self,
+        (input, load): (f64, f64),
+        [more_input, more_load]: [Option<S>; 2],
         dt: f64,
         meter: &mut Meter,
     ) -> Result<()> {
@@ -166,7 +185,8 @@ impl<S: Scalar> Running<S> {
             let parts = pieces * whole_parts(steps * finer, self.most_parts, dt)?;
             state.make_room(parts as usize + CHUNK / 4);
             let before = self.run;
-            let arrived = arriving(&mut self.way.as_mut(), input, dt);
+            let arrived = arriving(&mut self.way.as_mut(), input, more_input, dt);
+            let load = more_load.map_or(S::constant(load), |more| more + load);
             let whole =
                 if self.machine.is_bare() { sample::<_, _, true> } else { sample::<_, _, false> };
             whole(
@@ -175,7 +195,7 @@ impl<S: Scalar> Running<S> {
                 state,
                 &mut self.run,
                 arrived,
-                S::constant(load),
+                load,
                 dt,
                 (0..parts, pieces),
                 self.integrator,
@@ -386,7 +406,7 @@ impl<S: Scalar> Running<S> {
                 }
                 room -= left;
                 let before = self.run;
-                let arrived = arriving(&mut way, inputs[index], dt_now);
+                let arrived = arriving(&mut way, inputs[index], None, dt_now);
                 sample::<_, _, BARE>(
                     &self.machine,
                     law,

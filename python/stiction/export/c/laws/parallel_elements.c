@@ -6,9 +6,10 @@
 #let STIFFEST = INITIAL_STIFFNESS
 #let CALMS = VISCOUS
 typedef struct {
-    struct {
-        STICTION_REAL force, upper, lower; /* by how much its yield points were moved */
-    } element[4];
+    STICTION_REAL force, upper, lower; /* by how much its yield points were moved */
+} stiction_element;
+typedef struct {
+    stiction_element element[4];
 } stiction_law;
 
 static real law_step(stiction_state *s, const motion *m)
