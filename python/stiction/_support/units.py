@@ -234,6 +234,13 @@ def bracketed_unit(name: str) -> str | None:
     return match.group(1) if match else None
 
 
+def bare_name(name: str) -> str:
+    """A column name without the unit in brackets at its end: ``"Time (s)"`` -> ``"Time"``."""
+    text = bracketed_unit(name)
+    # Digits in brackets number a joint: q[0].
+    return name if not text or text.isdigit() else _BRACKETED.sub("", name).strip() or name
+
+
 def ending_unit(name: str, quantities: tuple[str, ...]) -> Unit | None:
     """The unit a column name ends in (``"pos_deg"``), if it measures one of ``quantities``."""
     folded = name.casefold().translate(_LOOK_ALIKES)
