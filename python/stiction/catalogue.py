@@ -369,9 +369,12 @@ class Catalogue(tuple[Record, ...]):
             if record.name == key:
                 return record
         names, what = self.names, "law" if isinstance(self[0], LawRecord) else "effect"
-        raise UnknownName(
-            f"there is no {what} '{key}'{did_you_mean(key, names)}; there are {commas(names)}"
-        )
+        others: tuple[LawRecord | EffectRecord, ...] = effects() if what == "law" else laws()
+        other = next((each.name for each in others if each.name == key.casefold()), "")
+        near = did_you_mean(key, names)
+        if other:
+            near = f" ('{other}' is {'a law' if what == 'effect' else 'an effect'})"
+        raise UnknownName(f"there is no {what} '{key}'{near}; there are {commas(names)}")
 
     def __contains__(self, key: object) -> bool:
         return key in self.names if isinstance(key, str) else super().__contains__(key)

@@ -131,6 +131,7 @@ _WORDS: Final = {
     "tick": "count",
 }
 """How people begin to write a unit in words; the longer of two comes first."""
+_SHARES: Final = frozenset({"%", "‰", "percent", "permille", "% rated", "pct"})
 
 
 def known_unit(name: str) -> Unit | None:
@@ -154,6 +155,11 @@ def find_unit(name: str, where: str) -> Unit:
         If there is no such unit.
     """
     unit = known_unit(name)
+    if unit is None and name.strip().casefold() in _SHARES:
+        raise InputError(
+            f"{where}: '{name}' is a share of a rated value; write the unit of that value, and in "
+            "session.toml as scale the value over 100 (over 1000 of ‰)"
+        )
     if unit is None:
         raise InputError(
             f"{where}: the unit '{name}' is not known{_meant(name)}; "

@@ -128,7 +128,9 @@ def _coefficient(table: Table, column: Column, unit: Unit | None) -> bool:
     """Whether an effort is a friction coefficient, by its unit or by its name."""
     if unit is not None:
         return unit.quantity == "ratio"
-    return any(c.name == column.name and COEFFICIENT in kinds_of(c)[:1] for c in columns_of([table]))
+    return any(
+        c.name == column.name and COEFFICIENT in kinds_of(c)[:1] for c in columns_of([table])
+    )
 
 
 def _unit(table: Table, role: str, column: Column) -> Unit | None:
