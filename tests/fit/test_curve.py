@@ -104,7 +104,8 @@ def test_a_table_of_a_friction_coefficient_is_fitted_per_newton(
 ) -> None:
     """As a tribometer writes it, with decimal commas."""
     path = tmp_path / "disc.csv"
-    rows = [f"{1e3 * v:.3f};{mu:.5f}" for v, mu in zip(SPEED, friction(SPEED), strict=True) if v > 0]
+    curve = zip(SPEED, friction(SPEED), strict=True)
+    rows = [f"{1e3 * v:.3f};{mu:.5f}" for v, mu in curve if v > 0]
     path.write_text("\n".join([head, *rows]).replace(".", ",") + "\n", encoding="utf-8")
     assert run(["fit", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)

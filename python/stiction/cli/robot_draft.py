@@ -349,7 +349,7 @@ def _session_text(
         "",
         *comment(
             'A recording may have role = "train", "select" or "test"; without roles they are '
-            "dealt. payload_kg says that something hangs on the last link: recordings with the "
+            "assigned in turn. payload_kg says that something hangs on the last link: recordings with the "
             "same number share it, and its mass is fitted."
         ),
     ]
