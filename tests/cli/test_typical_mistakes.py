@@ -341,6 +341,10 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
         ),
         "300 samples are too few for a kernel of 0.299 s, over which the effort is averaged",
     ),
+    "a target by its name": (
+        lambda: st.Plant.from_dict({"friction": {"law": "coulomb"}}).export(target="c"),
+        "it is called 'to' here",
+    ),
     "nothing to fit": (lambda: st.fit(), "plant is missing"),
     "law of a diagnosis": (
         lambda: st.diagnose(st.Session([recording()]), law="lugre"), "called 'laws' here",
@@ -367,6 +371,8 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
         (st.Recording, "from_csv", "stiction.load(path) reads"),
         (st.Plant, "from_dct", "stiction.load(path) reads"),
         (st.Plant, "simulat", "did you mean 'simulate'?"),
+        (st.laws(), "lugre", "write laws()['lugre']"),
+        (st.effects(), "cogging", "write effects()['cogging']"),
         (st, "diagnos", "did you mean 'diagnose'?"),
         (st, "Sesion", "did you mean 'Session'?"),
     ],

@@ -684,6 +684,7 @@ class Plant(metaclass=FromFile):
         """
         return steady.position_effort(self, positions)
 
+    @explain_keywords
     def export(self, to: str, *, speed: float | None = None) -> Export:
         """The plant as another tool takes it.
 
