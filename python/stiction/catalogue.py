@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cache
-from typing import Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from . import _native
 from ._support.wording import commas, did_you_mean
@@ -369,9 +369,19 @@ class Catalogue(tuple[Record, ...]):
             if record.name == key:
                 return record
         names, what = self.names, "law" if isinstance(self[0], LawRecord) else "effect"
-        raise UnknownName(
-            f"there is no {what} '{key}'{did_you_mean(key, names)}; there are {commas(names)}"
-        )
+        others: tuple[LawRecord | EffectRecord, ...] = effects() if what == "law" else laws()
+        other = next((each.name for each in others if each.name == key.casefold()), "")
+        near = did_you_mean(key, names)
+        if other:
+            near = f" ('{other}' is {'a law' if what == 'effect' else 'an effect'})"
+        raise UnknownName(f"there is no {what} '{key}'{near}; there are {commas(names)}")
+
+    if not TYPE_CHECKING:  # for whom any name would then be there
+
+        def __getattr__(self, name: str) -> Any:
+            call = "laws" if self and isinstance(self[0], LawRecord) else "effects"
+            meant = f"; write {call}()['{name}']" if name in self.names else ""
+            raise AttributeError(f"the catalogue has no attribute '{name}'{meant}")
 
     def __contains__(self, key: object) -> bool:
         return key in self.names if isinstance(key, str) else super().__contains__(key)

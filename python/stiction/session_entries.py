@@ -23,6 +23,12 @@ _KEYS: Final = (
     *("file", "from", "to", "role", "kind", "start_s", "cold", "replicate_of", "columns"),
     *SETTINGS,
 )
+_OTHERS: Final = {
+    **dict.fromkeys(("path", "filename", "name", "recording", "csv"), "file"),
+    **dict.fromkeys(("split", "use", "set"), "role"),
+    **dict.fromkeys(("type", "label", "experiment"), "kind"),
+}
+"""What others call a key."""
 _WILD: Final = re.compile(r"[*?]|\[[^\]]+\]")
 _ROW: Final = re.compile(r"row ([1-9]\d{0,14})")
 _MOST_FILES: Final = 10_000
@@ -97,7 +103,7 @@ def entries_of(path: Path, tables: Sequence[Mapping[str, Any]]) -> list[Entry]:
 
 def _entries(path: Path, place: int, table: Mapping[str, Any]) -> list[Entry]:
     where = f"{path}: [[recordings]] {place}"
-    check_keys(table, _KEYS, where)
+    check_keys(table, _KEYS, where, _OTHERS)
     if "file" not in table:
         raise InputError(f'{where}: file is missing; write file = "run.csv"')
     labels = _labels(table, where)

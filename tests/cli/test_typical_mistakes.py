@@ -138,6 +138,76 @@ COMMANDS: dict[str, tuple[str, str, str, list[str], str]] = {
     "below 0": (
         "plant.toml", "coulomb = 0.2", "coulomb = -0.2", ["plan", "plant.toml"], "out of bounds",
     ),
+    "a recording for a verb": ("", "", "", ["run.csv"], "write for instance stiction diagnose run"),
+    "a folder for a verb": ("", "", "", ["empty"], "stiction watch empty"),
+    "a verb of others": ("", "", "", ["identify", "run.csv"], "did you mean 'fit'?"),
+    "a list": ("", "", "", ["list"], "did you mean 'laws'?"),
+    "an option of others": (
+        "", "", "", ["diagnose", "session.toml", "--jobs", "2"], "did you mean '--threads'?",
+    ),
+    "two laws": ("", "", "", ["fit", "run.csv", "--law", "coulomb,lugre"], "a plant has one; give"),
+    "a law and an effect": (
+        "", "", "", ["diagnose", "run.csv", "--law", "coulomb+stribeck"], "tries every effect by",
+    ),
+    "an effect for the law of a plant": (
+        "plant.toml", '"coulomb"', '"stribeck"', ["plan", "plant.toml"], "under [[effects]]",
+    ),
+    "a law for an effect": (
+        "plant.toml", '"torque_bias"', '"lugre"', ["plan", "plant.toml"],
+        "is a law and no effect; write it under [friction]",
+    ),
+    "a part of a name": (
+        "plant.toml", '"torque_bias"', '"bias"', ["plan", "plant.toml"], "mean 'torque_bias'?",
+    ),
+    "a kind of motion of others": (
+        "plant.toml", '"rotary"', '"rotational"', ["plan", "plant.toml"], "did you mean 'rotary'?",
+    ),
+    "translational": (
+        "plant.toml", '"rotary"', '"translational"', ["plan", "plant.toml"], "mean 'linear'?",
+    ),
+    "a unit for an input": (
+        "plant.toml", '"torque_nm"', '"A"', ["plan", "plant.toml"], "did you mean 'current_a'?",
+    ),
+    "a number with its unit": (
+        "plant.toml", "inertia = 0.01", 'inertia = "0.01 kg m2"', ["plan", "plant.toml"],
+        "write it alone and in SI units",
+    ),
+    "no table": (
+        "plant.toml", "[motion]", "inertia = 0.01\n[motion]", ["plan", "plant.toml"],
+        "'inertia' stands outside a table; write it under [body]",
+    ),
+    "a colon": (
+        "plant.toml", "inertia = 0.01", '"inertia": 0.01', ["plan", "plant.toml"],
+        "write name = value, without a colon",
+    ),
+    "a semicolon": (
+        "plant.toml", "gain = 1.0", "gain = 1.0;", ["plan", "plant.toml"], "leave out the semi",
+    ),
+    "a backslash": (
+        "session.toml", '"run.csv"', '"C:\\data\\run.csv"', ["fit", "session.toml"],
+        "write / in place of",
+    ),
+    "path for file": (
+        "session.toml", 'file = "run.csv"', 'path = "run.csv"', ["fit", "session.toml"],
+        "did you mean 'file'?",
+    ),
+    "a role behind its column": (
+        "session.toml", 'time = "t"', 't = "time"', ["fit", "session.toml"], 'write time = "t"',
+    ),
+    "per cent": (
+        "", "", "", ["diagnose", "run.csv", "--columns", "input=u [%]"], "share of a rated value",
+    ),
+    "a unit without brackets": (
+        "", "", "", ["diagnose", "run.csv", "--columns", "position=q deg"], "position=q [deg]",
+    ),
+    "findings for a fit": ("", "", "", ["fit", "findings.json"], "holds what a diagnosis found"),
+    "a plant for a draft": (
+        "", "", "", ["init", "plant.toml", "-o", "new"], "is a TOML file, as plants and sessions",
+    ),
+    "a recording for an import": (
+        "", "", "", ["import", "run.csv", "-o", "new"], "parameters of better-actuator-models",
+    ),
+    "one row": ("", "", "", ["simulate", "plant.toml", "one.csv"], "has 1 row, and at least 200"),
 }  # fmt: skip
 
 
@@ -151,6 +221,7 @@ def test_a_mistake_on_the_command_line_is_one_helpful_sentence(
     for other in ("findings.json", "arm.urdf"):
         (tmp_path / other).write_text("{}", encoding="utf-8")
     (tmp_path / "empty").mkdir()
+    (tmp_path / "one.csv").write_text("time_s,torque_nm,position_rad\n0,1,0\n", encoding="utf-8")
     if file:
         desk.edit(tmp_path / file, old, new)
     monkeypatch.chdir(tmp_path)
@@ -248,6 +319,32 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
         lambda: st.Motor(0.1, st.FrictionModel("lugre")),
         "torque_constant is a FrictionModel, and that belongs to friction; write friction=",
     ),
+    "a key outside its table": (
+        lambda: st.Plant.from_dict({"law": "coulomb"}), 'in Python "friction": {"law": ...}',
+    ),
+    "an effect by its key": (
+        lambda: st.Plant.from_dict(
+            {"friction": {"law": "coulomb"}, "effects": [{"stribeck": {"excess": 0.1}}]}
+        ),
+        'name is missing; write name = "stribeck"',
+    ),
+    "an effect for a law": (
+        lambda: st.fit_curve(np.arange(1.0, 9.0), np.ones(8), "Stribeck"),
+        "'stribeck' is an effect",
+    ),
+    "a law for an effect": (lambda: st.effects()["lugre"], "('lugre' is a law)"),
+    "a record of 0.3 s": (
+        lambda: st.fit(
+            st.Session([recording()], plant=st.Plant.from_dict({
+                "drive": {"input": "torque_nm"}, "friction": {"law": "coulomb"},
+            }))
+        ),
+        "300 samples are too few for a kernel of 0.299 s, over which the effort is averaged",
+    ),
+    "a target by its name": (
+        lambda: st.Plant.from_dict({"friction": {"law": "coulomb"}}).export(target="c"),
+        "it is called 'to' here",
+    ),
     "nothing to fit": (lambda: st.fit(), "plant is missing"),
     "law of a diagnosis": (
         lambda: st.diagnose(st.Session([recording()]), law="lugre"), "called 'laws' here",
@@ -274,6 +371,8 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
         (st.Recording, "from_csv", "stiction.load(path) reads"),
         (st.Plant, "from_dct", "stiction.load(path) reads"),
         (st.Plant, "simulat", "did you mean 'simulate'?"),
+        (st.laws(), "lugre", "write laws()['lugre']"),
+        (st.effects(), "cogging", "write effects()['cogging']"),
         (st, "diagnos", "did you mean 'diagnose'?"),
         (st, "Sesion", "did you mean 'Session'?"),
     ],

@@ -98,6 +98,24 @@ def test_units_that_nobody_states_are_told(
     assert "'% rated', which is not known" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("head", ["v_mm_s;mu", "Sliding speed (mm/s);COF"])
+def test_a_table_of_a_friction_coefficient_is_fitted_per_newton(
+    head: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As a tribometer writes it, with decimal commas."""
+    path = tmp_path / "disc.csv"
+    curve = zip(SPEED, friction(SPEED), strict=True)
+    rows = [f"{1e3 * v:.3f};{mu:.5f}" for v, mu in curve if v > 0]
+    path.write_text("\n".join([head, *rows]).replace(".", ",") + "\n", encoding="utf-8")
+    assert run(["fit", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    level = said["parameters"]["friction.breakaway"]
+    assert level["value"] == pytest.approx(BREAKAWAY, rel=1e-2)
+    assert level["unit"] == "N"
+    assert "per N of normal force" in " ".join(said["assumed"])
+    assert "units: none" not in " ".join(said["assumed"])
+
+
 def test_a_curve_is_drawn_with_its_points() -> None:
     axes = st.fit_curve(SPEED, friction(SPEED)).plot()
     assert [line.get_label() for line in axes.lines] == ["table", "coulomb"]

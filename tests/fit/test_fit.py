@@ -110,7 +110,9 @@ def test_what_the_data_do_not_tell_is_said(recording: Recording) -> None:
         "stribeck_velocity": 0.1,
     }
     found = fit(plant(friction={**friction, "coulomb": {"value": 0.3, "fixed": True}}), recording)
-    assert any("friction.stribeck_velocity is not determined" in s for s in found.undetermined)
+    told = [s for s in found.undetermined if "friction.stribeck_velocity is not determined" in s]
+    assert len(told) == 1
+    assert told[0].endswith(" rad/s")
     assert found["stribeck_velocity"].stderr == np.inf
     told = json.loads(found.to_json(), parse_constant=pytest.fail)["parameters"]
     assert told["friction.stribeck_velocity"]["ci95"] == [None, None]

@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import stiction as st
 from stiction import FrictionModel, InputError, Motor, Plant
+from stiction.diagnosis.screening.candidates import present
+from stiction.plant.overlap import REMEMBERS
 
 WHOLE = """
 [motion]
@@ -227,3 +230,36 @@ def test_bounds_that_leave_nothing_to_fit_fix_a_parameter():
     plant = Plant.from_dict({"friction": {"law": "coulomb", "coulomb": stated}})
     assert plant.parameters["coulomb"].fixed
     assert Plant.from_dict(plant.to_dict()) == plant
+
+
+@pytest.mark.parametrize("effect", [each for each in st.effects() if each.law_terms])
+def test_an_effect_that_law_or_body_state_as_well_is_told(
+    effect: st.EffectRecord, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The diagnosis looks for none of them again, and a fit cannot tell their shares."""
+    term = effect.law_terms[0]
+    laws = {law.name: [each.name for each in law.parameters] for law in st.laws()}
+    memory = term == REMEMBERS
+    table: dict[str, dict[str, object]] = {"friction": {"law": "coulomb"}}
+    if memory:
+        table = {"friction": {"law": "maxwell_slip"}}
+    elif term.startswith("body."):
+        table["body"] = {term.removeprefix("body."): 1.0}
+    else:
+        law = next(name for name, terms in laws.items() if term in terms)
+        table["friction"] = {"law": law, term: 2.0}
+    Plant.from_dict(table)
+    assert caplog.text == ""
+    doubled = Plant.from_dict({**table, "effects": [{"name": effect.name}]})
+    assert f"[[effects]] 1 ({effect.name}) is stated by" in caplog.text
+    assert (term.removeprefix("body.") in caplog.text) or memory
+    assert caplog.text.count("drop one") == 1
+    assert present(doubled, effect)
+
+
+def test_an_effect_beside_a_law_that_does_not_state_it_is_not_told(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    level = {"law": "coulomb", "coulomb": 0.2}
+    Plant.from_dict({"friction": level, "effects": [{"name": "stribeck"}]})
+    assert caplog.text == ""

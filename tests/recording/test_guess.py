@@ -221,6 +221,27 @@ def test_a_force_alone_beside_a_motion_is_a_measured_effort() -> None:
     assert asked.drive == "force_n"
 
 
+@pytest.mark.parametrize(
+    ("current", "drive"),
+    [
+        ("Iststrom [A]", "current_a"),
+        ("actual_current [A]", "current_a"),
+        ("Measured current (A)", "current_a"),
+        ("Torque actual value [Nm]", "torque_nm"),
+        ("measured torque [Nm]", "prescribed_motion"),
+    ],
+)
+def test_what_a_drive_reports_drives_and_what_a_sensor_feels_does_not(
+    current: str, drive: str
+) -> None:
+    real = machine()
+    columns = {"Zeit [s]": real["time"], "Lage [rad]": real["position"], current: real["effort"]}
+    found = guess([table(columns)])
+    assert found.drive == drive
+    assert found.complete
+    assert found.by_role["position"].column == "Lage [rad]"
+
+
 def test_a_torque_drives() -> None:
     real = machine()
     found = guess([table({"time": real["time"], "position": real["position"],

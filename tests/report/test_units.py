@@ -11,6 +11,7 @@ import pytest
 import stiction as st
 from stiction._support.scale import Scale, scale_for
 from stiction.fitting.variables import with_effort_in
+from stiction.report.sections import data
 
 PLANT = st.Plant.from_dict(
     {
@@ -80,3 +81,25 @@ def test_large_and_pure_numbers_are_written_plainly() -> None:
     assert scale_for([13926.9], "Pa").text(13926.9) == "13.9\u00a0kPa"
     assert scale_for([0.003], "1") == Scale(1.0, "")
     assert Scale(1.0, "").on_axis("residual") == "residual"
+
+
+@pytest.mark.parametrize(
+    ("timing", "told"),
+    [
+        ((-0.9998e-3, -7.6e-4), "are 1 ms late before and 0.76 ms late after"),
+        ((0.0, 2e-3), "are right before and 2 ms early after"),
+        ((-1e-3, 5e-4), "are 1 ms late before and 0.5 ms early after"),
+    ],
+)
+def test_what_a_fit_makes_of_the_time_stamps_is_said_in_words(
+    timing: tuple[float, float], told: str
+) -> None:
+    assert told in data._through({"timing_s": timing}).replace("\xa0", " ")
+    assert data._through({"timing_s": (0.0, 0.0)}) == ""
+
+
+def test_noise_that_does_not_show_is_no_number() -> None:
+    row = data._noise({"recording": "a", "position": 0.0, "count": 0.0, "effort": 0.0}, "rad", "A")
+    assert {row["position"], row["count"], row["effort"]} == {"none seen"}
+    row = data._noise({"recording": "a", "position": 0.0, "count": 0.0, "effort": 0.1}, "rad", "A")
+    assert row["effort"] == "0.10\xa0A"

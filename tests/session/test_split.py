@@ -205,7 +205,7 @@ def test_a_session_without_recordings_cannot_be_split() -> None:
 
 def test_the_split_reads_in_plain_words() -> None:
     words = session({}, seconds=12.0).split().describe()
-    assert "dealt train, select, test in a turning order" in words
+    assert "take the roles train, select and test in rotation" in words
     assert "train: 2 blocks of recording 1" in words
     assert "select: 2 folds over train" in session(*[{"role": "train"}] * 3).split().describe()
 

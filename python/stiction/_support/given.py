@@ -306,6 +306,8 @@ def number(given: Any, where: str) -> float:
         told = brief(given)
         what = "" if told == f"a {kind}" else f"{told} "
         quoted = "; leave out the quotes" if _is_number(given) else ""
+        if not quoted and isinstance(given, str) and _is_number(given.strip().partition(" ")[0]):
+            quoted = "; write it alone and in SI units, without the unit"
         raise InputError(f"{where}: {what}is a {kind}; allowed is a number{quoted}")
     try:
         converted = float(given)

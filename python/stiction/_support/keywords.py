@@ -27,6 +27,7 @@ _NO_COLUMNS: Final = (
     "threads workers n_jobs jobs cores n_threads",
     "seed random_state rng",
     "parameters params samples ranges",
+    "to target format kind",
 )
 """What is said of the same thing, beside the words of columns; the data tell nothing of these."""
 

@@ -131,6 +131,7 @@ _WORDS: Final = {
     "tick": "count",
 }
 """How people begin to write a unit in words; the longer of two comes first."""
+_SHARES: Final = frozenset({"%", "‰", "percent", "permille", "% rated", "pct"})
 
 
 def known_unit(name: str) -> Unit | None:
@@ -154,6 +155,11 @@ def find_unit(name: str, where: str) -> Unit:
         If there is no such unit.
     """
     unit = known_unit(name)
+    if unit is None and name.strip().casefold() in _SHARES:
+        raise InputError(
+            f"{where}: '{name}' is a share of a rated value; write the unit of that value, and in "
+            "session.toml as scale the value over 100 (over 1000 of ‰)"
+        )
     if unit is None:
         raise InputError(
             f"{where}: the unit '{name}' is not known{_meant(name)}; "
@@ -232,6 +238,13 @@ def bracketed_unit(name: str) -> str | None:
     """What a column name says in brackets at its end: ``"Time (s)"`` -> ``"s"``."""
     match = _BRACKETED.search(name)
     return match.group(1) if match else None
+
+
+def bare_name(name: str) -> str:
+    """A column name without the unit in brackets at its end: ``"Time (s)"`` -> ``"Time"``."""
+    text = bracketed_unit(name)
+    # Digits in brackets number a joint: q[0].
+    return name if not text or text.isdigit() else _BRACKETED.sub("", name).strip() or name
 
 
 def ending_unit(name: str, quantities: tuple[str, ...]) -> Unit | None:

@@ -9,6 +9,8 @@ from collections.abc import Iterable, Sequence
 
 # Below this similarity a suggestion misleads more often than it helps.
 _ALIKE = 0.55
+# A shorter part of a name is a part of many.
+_A_PART = 4
 # A longer list than this hides what the reader looks for.
 _LISTED = 24
 
@@ -79,8 +81,12 @@ def nearest(word: object, words: Iterable[str]) -> str | None:
     by_fold: dict[str, str] = {}
     for candidate in words:
         by_fold.setdefault(candidate.casefold(), candidate)
-    hits = difflib.get_close_matches(word.casefold(), by_fold, n=1, cutoff=_ALIKE)
-    return by_fold[hits[0]] if hits else None
+    folded = word.casefold()
+    hits = difflib.get_close_matches(folded, by_fold, n=1, cutoff=_ALIKE)
+    if not hits and len(folded) >= _A_PART:
+        # "bias" is a word of torque_bias alone.
+        hits = [each for each in by_fold if folded in each.split("_")]
+    return by_fold[hits[0]] if len(hits) == 1 else None
 
 
 def did_you_mean(word: object, words: Iterable[str]) -> str:

@@ -144,7 +144,7 @@ def _content(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: is not text in UTF-8; save it as UTF-8") from None
     except json.JSONDecodeError as error:
         raise InputError(
-            f"{path}: line {error.lineno} is not JSON ({error.msg}); was the file cut off?"
+            f"{path}: line {error.lineno} is not JSON ({error.msg}), and {wanted}; check the path"
         ) from None
     except InputError:
         raise

@@ -93,6 +93,7 @@ def fit(
 
 def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: bool) -> bool:
     """Fit a law to a friction curve and say so, where the file is one."""
+    from .._support.file_kinds import refuse_findings
     from ..fitting.curve_file import curve_table, fit_curve_file
     from .columns import read_columns
     from .drafts import is_data
@@ -100,6 +101,7 @@ def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: boo
     if not is_data(path) or os.path.isdir(path):
         return False
 
+    refuse_findings(path)
     stated = read_columns(columns) if columns else None
     table = curve_table(path, stated)
     if table is None:

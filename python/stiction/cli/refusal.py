@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from typing import Literal, get_args, get_origin
 
@@ -14,6 +15,20 @@ __all__ = ["refusal"]
 
 OPTIONS = ("--help", "--version")
 """Of the program itself."""
+OTHERS = {
+    **dict.fromkeys(("identify", "estimate", "calibrate", "train"), "fit"),
+    **dict.fromkeys(("analyze", "analyse", "find", "run"), "diagnose"),
+    **dict.fromkeys(("list", "models"), "laws"),
+    **dict.fromkeys(("excite", "design"), "plan"),
+    **dict.fromkeys(("feedforward", "control"), "compensate"),
+    **dict.fromkeys(("convert", "generate"), "export"),
+    **dict.fromkeys(("jobs", "workers", "cores"), "threads"),
+    **dict.fromkeys(("output", "folder", "dir"), "out"),
+    **dict.fromkeys(("model", "friction"), "law"),
+    **dict.fromkeys(("exclude", "skip"), "without"),
+    **dict.fromkeys(("unit", "units", "column"), "columns"),
+}
+"""What others call a verb or an option."""
 KINDS = {int: "a whole number", float: "a number", bool: "true or false"}
 
 
@@ -74,13 +89,17 @@ def _no_verb(given: str, app: cyclopts.App) -> str:
     verbs = [verb for verb in app if not verb.startswith("-")]
     if given.startswith("-"):
         return _no_option(given, OPTIONS)
-    near = did_you_mean(given, [*verbs, *OPTIONS])
+    if os.path.exists(given):
+        verb = "watch" if os.path.isdir(given) else "diagnose"
+        return f"'{given}' is a file and no verb; write for instance stiction {verb} {given}"
+    near = did_you_mean(OTHERS.get(given.casefold(), given), [*verbs, *OPTIONS])
     return f"there is no verb '{given}'{near}; there are {commas(verbs)}"
 
 
 def _no_option(given: str, known: Iterable[str]) -> str:
     names = list(known)
     # Without the dashes, in which all of them are alike.
-    meant = nearest(given.lstrip("-"), [name.lstrip("-") for name in names])
+    wanted = given.lstrip("-")
+    meant = nearest(OTHERS.get(wanted, wanted), [name.lstrip("-") for name in names])
     near = f" (did you mean '--{meant}'?)" if meant is not None else ""
     return f"there is no option {given}{near}; there are {commas(names)}"

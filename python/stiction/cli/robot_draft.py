@@ -349,8 +349,8 @@ def _session_text(
         "",
         *comment(
             'A recording may have role = "train", "select" or "test"; without roles they are '
-            "dealt. payload_kg says that something hangs on the last link: recordings with the "
-            "same number share it, and its mass is fitted."
+            "assigned in turn. payload_kg says that something hangs on the last link: recordings "
+            "with the same number share it, and its mass is fitted."
         ),
     ]
     kinds = kinds_of([files[0] for files in paths])

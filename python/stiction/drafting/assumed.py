@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .._support.units import bare_name
 from .._support.wording import plural
 from ..plant import Plant
 from ..session import Session
@@ -43,7 +44,8 @@ def _columns(draft: Draft) -> str:
                 else "nothing tells what it is measured in"
             )
             unit = f"{unit} is a guess: {why}"
-        told.append(f"{role} = {' '.join(one.column.split())} [{unit}{scale}]")
+        name = bare_name(one.column) if one.unit else one.column
+        told.append(f"{role} = {' '.join(name.split())} [{unit}{scale}]")
     joint = f"; joint {draft.joints[0]} of {len(draft.joints)} (--joint)" if draft.joints else ""
     return f"columns: {', '.join(told)}{joint} (--columns states others)"
 

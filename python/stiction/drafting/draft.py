@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -140,6 +141,12 @@ def _check_law(law: str) -> None:
         raise InputError(
             f"'{law}' is an effect and no law: a diagnosis tries every effect by itself, and a "
             f"plant file states it under [[effects]]; the laws are {commas(names)}"
+        )
+    several = [part for part in re.split(r"[,+ ]+", law) if part in names or part in effects()]
+    if len(several) > 1:
+        raise InputError(
+            f"law = '{law}' names several, and a plant has one; give --law {several[0]}: a "
+            "diagnosis tries every effect by itself, and with --laws other laws as well"
         )
     if law not in names:
         raise InputError(

@@ -298,7 +298,7 @@ def _recordings(
         "Recordings of one machine in one state: with another load or another arm it is another "
         'session. A recording may have role = "train" (it is fitted), "select" (it decides '
         'which effects, and how many) or "test" (it is opened once, after the last decision); '
-        "without roles they are dealt."
+        "without roles they are assigned in turn."
         + (" The kinds are from the names of the files." if any(kinds) else "")
     )
     for files, kind, header in zip(paths, kinds, headers or [{}] * len(paths), strict=True):

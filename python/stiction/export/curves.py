@@ -67,7 +67,7 @@ class Curves:
         chosen, _ = few_points(speeds[own], curve[own], most)
         x, y = speeds[own][chosen], curve[own][chosen]
         numbers = {"speed_off": lines_off(x, y, speeds, curve)}
-        held = ["friction over speed"]
+        held = [f"friction over speed, up to {speed:.3g} {plant.position_unit}/s (--speed)"]
         places, efforts = np.zeros(1), np.zeros(1)
         if plant.motion == "rotary":
             turn = np.linspace(0.0, 2.0 * np.pi, PLACES)

@@ -23,8 +23,10 @@ __all__ = ["curve_table", "fit_curve_file"]
 _ROLES: Final = ("velocity", "effort")
 _QUANTITIES: Final = {
     "velocity": ("angular velocity", "velocity"),
-    "effort": ("torque", "force"),
+    "effort": ("torque", "force", "ratio"),
 }
+COEFFICIENT: Final = "friction_coefficient"
+"""What tribologists record in place of a force."""
 
 
 def curve_table(path: Path, stated: Mapping[str, Any] | None = None) -> Table | None:
@@ -49,7 +51,8 @@ def curve_table(path: Path, stated: Mapping[str, Any] | None = None) -> Table | 
         return table
     kinds = {kind for column in columns for kind in kinds_of(column)}
     motion = {"position", "reference"} & kinds
-    return table if "velocity" in kinds and "drive" in kinds and not motion else None
+    fitting = "velocity" in kinds and not {"drive", COEFFICIENT}.isdisjoint(kinds)
+    return table if fitting and not motion else None
 
 
 def fit_curve_file(
@@ -80,7 +83,10 @@ def fit_curve_file(
         raise InputError(
             f"{path}: {told} do not go together; state units of one kind of motion with --columns"
         )
-    motion = motions.pop() if motions else "rotary"
+    ratio = _coefficient(table, chosen["effort"], units["effort"])
+    motion = motions.pop() if motions else "linear" if ratio else "rotary"
+    if ratio:
+        units["effort"] = find_unit("1", str(path))
     assumed = [
         f"{role} = {chosen[role].name} [{SI_UNIT[_QUANTITIES[role][motion == 'linear']]}]"
         for role in _ROLES
@@ -92,6 +98,12 @@ def fit_curve_file(
             f"units: none stands in the header, taken as {', '.join(assumed)} "
             '(--columns "velocity=NAME [rad/s], effort=NAME [Nm]" states them)'
         )
+    if ratio:
+        notes.append(
+            f"{chosen['effort'].name} is a friction coefficient: every N is one per N of normal "
+            "force, so coulomb and breakaway are the kinetic and the static coefficient; times "
+            "your normal force they are those of your contact"
+        )
     try:
         return fit_curve(values["velocity"], values["effort"], law, motion=motion), tuple(notes)
     except InputError as error:
@@ -99,8 +111,10 @@ def fit_curve_file(
 
 
 def _by_name(table: Table, role: str) -> Column:
-    kind = "velocity" if role == "velocity" else "drive"
-    fitting = [column.name for column in columns_of([table]) if kind in kinds_of(column)[:1]]
+    kinds = ("velocity",) if role == "velocity" else ("drive", COEFFICIENT)
+    able = {column.name: kinds_of(column)[:1] for column in columns_of([table])}
+    # A force beside a coefficient is what the coefficient was computed of.
+    fitting = next((got for kind in kinds if (got := [c for c in able if kind in able[c]])), [])
     if len(fitting) != 1:
         why = "no column is known to be" if not fitting else f"{commas(fitting)} could each be"
         raise InputError(
@@ -108,6 +122,15 @@ def _by_name(table: Table, role: str) -> Column:
             f'it with --columns "velocity=NAME [rad/s], effort=NAME [Nm]"'
         )
     return Column(fitting[0])
+
+
+def _coefficient(table: Table, column: Column, unit: Unit | None) -> bool:
+    """Whether an effort is a friction coefficient, by its unit or by its name."""
+    if unit is not None:
+        return unit.quantity == "ratio"
+    return any(
+        c.name == column.name and COEFFICIENT in kinds_of(c)[:1] for c in columns_of([table])
+    )
 
 
 def _unit(table: Table, role: str, column: Column) -> Unit | None:

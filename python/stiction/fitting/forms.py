@@ -11,6 +11,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.workers import side_by_side
 from ..plant import Plant
+from ..plant.overlap import REMEMBERS
 from ..plant.parameter import Parameter
 from ..recording import Recording
 from ..recording.motion import SUPPORTS_S, Kernel, noise_of
@@ -77,8 +78,6 @@ noise of the effort that is left either way, and the weak form sees what is fast
 stands still."""
 SHOWS: Final = 0.01
 """Share of the measured effort that accelerations must take for windows to be counted by them."""
-REMEMBERS: Final = "law.remembers"
-"""Term of laws that an effect stands for which builds friction up over a distance."""
 MATTERS: Final = 1e-3
 """Share of the measured effort that it must leave there: less, and it does not matter."""
 NARROW: Final = 1.5

@@ -395,7 +395,9 @@ def evaluate(
         covariance=matrix,
         correlations=correlations(matrix),
         bounds_hit=_bound_sentences(parameters, given, followed=stated != plant),
-        undetermined=_undetermined_sentences(parameters, waves_of(parameters, matrix), flat, train),
+        undetermined=_undetermined_sentences(
+            parameters, waves_of(parameters, matrix), flat, train, plant
+        ),
         assumed=(told,) if told else (),
         r2=fitted[2],
         train_rms=fitted[0],
@@ -521,11 +523,14 @@ def _undetermined_sentences(
     waves: dict[str, FitParameter],
     flat: Sequence[Sequence[str]],
     rows: Sequence[Rows],
+    plant: Plant,
 ) -> tuple[str, ...]:
+    unit = f"{plant.position_unit}/s"
     sentences = []
     for group in flat:
         if len(group) == 1:
-            sentences.append(f"{group[0]} is not determined by these data{_why(group[0], rows)}")
+            why = _why(group[0], rows, unit)
+            sentences.append(f"{group[0]} is not determined by these data{why}")
         else:
             names = ", ".join(group)
             sentences.append(
@@ -542,12 +547,12 @@ def _undetermined_sentences(
         if path not in told | whole and p.stderr > abs(p.value) and p.value != 0.0:
             sentences.append(
                 f"{path} is not determined by these data: its standard error {p.stderr:.2g} "
-                f"exceeds its value{_why(path, rows)}"
+                f"exceeds its value{_why(path, rows, unit)}"
             )
     return tuple(sentences)
 
 
-def _why(path: str, rows: Sequence[Rows]) -> str:
+def _why(path: str, rows: Sequence[Rows], unit: str) -> str:
     if path.startswith("effects.temperature") and all(r.form.temperature is None for r in rows):
         return ": no temperature was recorded"
     speeds = np.concatenate([np.abs(each.form.velocity[each.mask]) for each in rows])
@@ -557,7 +562,7 @@ def _why(path: str, rows: Sequence[Rows]) -> str:
     falls = (word for each in effects() if each.falls for word in (each.name, *each.law_terms))
     if any(word in path for word in falls):
         low = float(np.quantile(moving, 0.05))
-        return f": 95 % of the speeds recorded are above {low:.3g}"
+        return f": 95 % of the speeds recorded are above {low:.3g} {unit}"
     if path.endswith(("viscous", "quadratic")):
-        return f": no speed above {float(moving.max()):.3g} was recorded"
+        return f": no speed above {float(moving.max()):.3g} {unit} was recorded"
     return ""

@@ -24,11 +24,18 @@ __all__ = [
 
 INPUTS: Final = ("current_a", "voltage_v", "torque_nm", "force_n")
 """What a drive may be commanded in."""
+_UNITS: Final = {
+    **dict.fromkeys(("a", "amp", "ampere", "iq", "i"), "current_a"),
+    **dict.fromkeys(("v", "volt", "u"), "voltage_v"),
+    **dict.fromkeys(("nm", "n·m", "n*m", "effort"), "torque_nm"),
+    **dict.fromkeys(("n", "newton"), "force_n"),
+}
+"""What others call them."""
 _NO_EFFORT: Final = {"current_a": "A", "voltage_v": "V"}
 """Inputs that are no effort, and their units."""
 GOALS: Final = {"rotary": "goal_rad", "linear": "goal_m"}
 """What a servo is commanded in."""
-_OF_INPUT: Final = ("input", "gain", "limit")
+INPUT_KEYS: Final = ("input", "gain", "limit")
 """Keys of a drive that is not a servo beside its kind."""
 KINDS: Final = ("direct", "prescribed_motion", "servo")
 LEAST_GAIN: Final = 1e-12
@@ -154,8 +161,8 @@ def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, A
         }
         check_servo(drive, where)
     else:
-        check_keys(given, ("kind", *_OF_INPUT), where)
-        useless = [name for name in _OF_INPUT if name in given]
+        check_keys(given, ("kind", *INPUT_KEYS), where)
+        useless = [name for name in INPUT_KEYS if name in given]
         if kind == "prescribed_motion" and useless:
             raise InputError(
                 f"{where} {commas(useless)} goes with an input, and a machine whose motion is "
@@ -163,7 +170,9 @@ def read_drive(given: Mapping[str, Any], motion: str, where: str) -> dict[str, A
             )
         if "input" in given:
             allowed = [name for name in INPUTS if name != _OTHER_MOTION[motion]]
-            drive["input"] = choice(given["input"], allowed, f"{where} input of a {motion} plant")
+            drive["input"] = choice(
+                given["input"], allowed, f"{where} input of a {motion} plant", _UNITS
+            )
         if "limit" in given:
             drive["limit"] = number(given["limit"], f"{where} limit")
             if drive["limit"] <= 0.0:

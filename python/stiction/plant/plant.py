@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,7 +27,7 @@ from ..catalogue import effects
 from ..errors import InputError
 from ..motor import Motor
 from ..trajectory import Trajectory
-from . import plant_file, steady
+from . import overlap, plant_file, steady
 from .drive import check_servo, gain_name, servo_numbers, unscaled_unit
 from .parameter import Parameter
 from .stated import Effect, Friction, check_parameters
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from ..export import Export
 
 __all__ = ["Plant"]
+
+_logger = logging.getLogger(__name__)
 
 GRAVITY: Final = 9.80665
 """m/s²."""
@@ -133,6 +136,11 @@ class Plant(metaclass=FromFile):
         ------
         InputError
             No mapping, unknown or missing keys, wrong types, values out of bounds.
+
+        Notes
+        -----
+        An effect that law or body state as well acts twice: a warning of the logger
+        ``stiction.plant`` names both.
         """
         table = given.mapping(table, source, "the tables of a plant file")
         parts = plant_file.parse(table, source)
@@ -151,6 +159,8 @@ class Plant(metaclass=FromFile):
             source=source,
         )
         plant._check()
+        for double in overlap.doubles(plant):
+            _logger.warning("%s", double)
         return plant
 
     @classmethod
@@ -674,6 +684,7 @@ class Plant(metaclass=FromFile):
         """
         return steady.position_effort(self, positions)
 
+    @explain_keywords
     def export(self, to: str, *, speed: float | None = None) -> Export:
         """The plant as another tool takes it.
 

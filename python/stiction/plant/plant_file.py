@@ -16,7 +16,7 @@ from .._support.keys import check_keys, choice
 from .._support.units import Motion
 from .._support.wording import commas, did_you_mean
 from ..errors import InputError
-from .drive import read_drive
+from .drive import INPUT_KEYS, read_drive
 from .parameter import Parameter
 
 __all__ = ["Parts", "check_payload", "parse", "read", "read_toml", "render"]
@@ -27,6 +27,11 @@ _DEEPEST: Final = 64
 _WORD: Final = re.compile(r"[^\s.=,\[\]{}#]+")
 # In decimal digits Python itself refuses it.
 _LONG_NUMBER: Final = re.compile(r"\b0[xob][0-9a-fA-F_]{1000}")
+_MOTIONS: Final = {
+    **dict.fromkeys(("rotational", "rotation", "revolute", "continuous", "angular"), "rotary"),
+    **dict.fromkeys(("translational", "translation", "prismatic", "sliding"), "linear"),
+}
+"""What others call the kind of a motion."""
 _TABLES: Final = ("motion", "drive", "body", "friction", "effects", "sensor", "controller")
 _BODY: Final = (
     "inertia",
@@ -126,6 +131,7 @@ def _near(path: Path) -> str:
 
 _LINE: Final = re.compile(r"at line (\d+)")
 _BARE_TEXT: Final = re.compile(r"^\s*\w+\s*=\s*[A-Za-z./]")
+_COLON: Final = re.compile(r"^\s*[\"']?[\w.]+[\"']?\s*:")
 _COMMA: Final = re.compile(r"=\s*-?\d+,\d+\s*(#.*)?$")
 
 
@@ -137,6 +143,12 @@ def _mend(text: str, error: str) -> str:
         return f"write a decimal point in place of the comma in {line.strip()}"
     if _BARE_TEXT.search(line) and '"' not in line:
         return f"put the text behind = into quotes in {line.strip()}"
+    if _COLON.search(line):
+        return f"write name = value, without a colon, in {line.strip()}"
+    if line.rstrip().endswith(";"):
+        return f"leave out the semicolon in {line.strip()}"
+    if "\\" in line:
+        return f"write / in place of \\ in {line.strip()}"
     return "mend that line"
 
 
@@ -175,10 +187,11 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
         raise InputError(
             f"{source}: is a session file, and a plant file is wanted; give the one that it names"
         )
-    check_keys(table, _TABLES, source)
+    _check_tables(table, source)
     motion_table = section(table, "motion", source)
     check_keys(motion_table, ("kind",), f"{source}: [motion]")
-    kind = choice(motion_table.get("kind", "rotary"), MOTIONS, f"{source}: [motion] kind")
+    stated = motion_table.get("kind", "rotary")
+    kind = choice(stated, MOTIONS, f"{source}: [motion] kind", _MOTIONS)
     motion: Motion = "linear" if kind == "linear" else "rotary"
     law, friction, options = _friction(section(table, "friction", source), source)
     drive = read_drive(section(table, "drive", source), motion, f"{source}: [drive]")
@@ -201,6 +214,31 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
         sensor=_sensor(section(table, "sensor", source), motion, source),
         controller=controller,
     )
+
+
+def _check_tables(table: Mapping[str, Any], source: str) -> None:
+    """Refuse what is no table of a plant file; of a key outside its table say where it belongs."""
+    for key in table:
+        home = "" if key in _TABLES else _home(key)
+        if home:
+            raise InputError(
+                f"{source}: '{key}' stands outside a table; write it under [{home}] (in Python "
+                f'"{home}": {{"{key}": ...}})'
+            )
+    check_keys(table, _TABLES, source)
+
+
+def _home(key: str) -> str:
+    from ..catalogue import laws
+
+    if key in _BODY:
+        return "body"
+    if key in INPUT_KEYS:
+        return "drive"
+    if key in ("counts_per_rev", "count_m"):
+        return "sensor"
+    of_a_law = any(key == each.name for law in laws() for each in law.parameters)
+    return "friction" if key == "law" or of_a_law else ""
 
 
 def section(table: Mapping[str, Any], name: str, source: str) -> Mapping[str, Any]:
@@ -295,12 +333,17 @@ def _friction(
     given: Mapping[str, Any], source: str
 ) -> tuple[str, dict[str, Parameter], dict[str, str]]:
     from .._native import called
-    from ..catalogue import laws
+    from ..catalogue import effects, laws
 
     where = f"{source}: [friction]"
     if "law" not in given:
         known_laws = commas(record.name for record in laws())
         raise InputError(f"{where} law is missing; allowed are {known_laws}")
+    if given["law"] in effects():
+        raise InputError(
+            f"{where} law = '{given['law']}' is an effect and no law; put it under [[effects]] as "
+            f'name = "{given["law"]}", and state one of {commas(laws().names)} here'
+        )
     law = choice(given["law"], (record.name for record in laws()), f"{where} law")
     record = next(record for record in laws() if record.name == law)
     options = {option.name: option for option in record.options}
@@ -324,7 +367,7 @@ def _friction(
 def _effects(
     given: Any, motion: Motion, servo: bool, source: str
 ) -> list[tuple[str, dict[str, Parameter]]]:
-    from ..catalogue import effects
+    from ..catalogue import effects, laws
 
     if not isinstance(given, list) or not all(isinstance(e, Mapping) for e in given):
         raise InputError(
@@ -336,7 +379,13 @@ def _effects(
     for index, entry in enumerate(given, 1):
         where = f"{source}: [[effects]] {index}"
         if "name" not in entry:
-            raise InputError(f"{where}: name is missing; allowed are {commas(records)}")
+            meant = next((f'; write name = "{key}"' for key in entry if key in records), "")
+            raise InputError(f"{where}: name is missing{meant}; allowed are {commas(records)}")
+        if entry["name"] in laws():
+            raise InputError(
+                f"{where} name = '{entry['name']}' is a law and no effect; write it under "
+                f'[friction] as law = "{entry["name"]}"'
+            )
         effect = choice(entry["name"], records, f"{where} name")
         if any(effect == other for other, _ in result):
             raise InputError(f"{where}: '{effect}' is there twice; drop one")

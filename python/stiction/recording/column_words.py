@@ -94,7 +94,7 @@ WORDS: Final[dict[str, Word]] = {
     **_words("x y z xm dist distance displ displacement disp stroke", "position", motion="linear"),
     **_words("travel length len weg", "position", motion="linear"),
     **_words("linear carriage slide", motion="linear"),
-    **_words("pos position enc encoder ticks", "position"),
+    **_words("pos position lage enc encoder ticks", "position"),
     **_words("vel velocity speed rate geschwindigkeit", "velocity"),
     **_words("omega w qdot dq dtheta rpm drehzahl gyro", "velocity", motion="rotary"),
     **_words("xdot dx", "velocity", motion="linear"),
@@ -129,7 +129,10 @@ WANTED: Final = _set(
     "ref reference goal target desired des set setpoint sp cmd command commanded demand demanded "
     "soll wanted nominal traj trajectory planned"
 )
-MEASURED: Final = _set("meas measured actual sensor cell loadcell feedback fb ist")
+MEASURED: Final = _set("meas measured sensor cell loadcell")
+REPORTED: Final = _set("actual act feedback fb ist istwert")
+"""A drive that reports what it gives has no sensor for it at the machine."""
+_MODIFIERS: Final = WANTED | MEASURED | REPORTED
 
 # Where a name holds several words the first of these kinds wins: the load_position is a position,
 # the load_torque a load, the current_position no current. Single letters count after words, the
@@ -250,15 +253,15 @@ def _meanings(parts: list[str]) -> tuple[list[str], set[str]]:
     words: list[str] = []
     modifiers: set[str] = set()
     for part in parts:
-        found = [part] if part in WORDS or part in WANTED | MEASURED else _inside(part)
+        found = [part] if part in WORDS or part in _MODIFIERS else _inside(part)
         words += [word for word in found if word in WORDS]
-        modifiers |= (WANTED | MEASURED) & set(found)
+        modifiers |= _MODIFIERS & set(found)
     return words, modifiers
 
 
 def _inside(part: str) -> list[str]:
     """Known words at the beginning and end of an unknown one: ``posref`` -> pos, ref."""
-    known = [w for w in (*WORDS, *WANTED, *MEASURED) if len(w) >= _SHORTEST]
+    known = [w for w in (*WORDS, *_MODIFIERS) if len(w) >= _SHORTEST]
     ends = [
         max((w for w in known if part.startswith(w)), key=len, default=""),
         max((w for w in known if part.endswith(w)), key=len, default=""),

@@ -192,6 +192,11 @@ class Columns(Mapping[str, Column]):
             )
         by_role: dict[str, Column] = {}
         for role, value in given.items():
+            if role not in ROLES and isinstance(value, str) and value in ROLES:
+                raise InputError(
+                    f"{where}: {role} = '{value}' is the wrong way round, for the role comes "
+                    f'first; write {value} = "{role}"'
+                )
             if role not in ROLES:
                 raise InputError(
                     f"{where}: '{role}' is not known{_role_meant(str(role))}; "

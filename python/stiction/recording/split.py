@@ -235,9 +235,9 @@ class _Dealer:
         for turn, part in enumerate(self._blocks(0)):
             self.parts[SPLIT_ROLES[_turned(turn)]].append(part)
         self.rules.append(
-            f"The single recording is cut into blocks of about {self.block_s:g} s, dealt train, "
-            f"select, test in a turning order; {self.edge_s:.3g} s on either side of each edge are "
-            "dropped."
+            f"The single recording is cut into blocks of about {self.block_s:g} s, which take the "
+            f"roles train, select and test in rotation; {self.edge_s:.3g} s on either side of each "
+            "edge are left out."
         )
 
     def _deal_kinds(self) -> None:
@@ -246,7 +246,8 @@ class _Dealer:
             self.roles[index] = SPLIT_ROLES[seen[recording.kind] % 3]
             seen[recording.kind] += 1
         self.rules.append(
-            "No recording has a role: those of each kind are dealt train, select, test in turn."
+            "No recording has a role: those of each kind are assigned to train, select and test "
+            "in turn."
         )
 
     def _deal_stated(self) -> None:

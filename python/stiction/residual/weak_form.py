@@ -591,8 +591,8 @@ def _commanded(plant: Plant, given: FloatArray, position: FloatArray, dt: float)
 
 def _too_few(source: str, samples: int, support: float) -> str:
     return (
-        f"{source}: {samples} samples are too few for a kernel of {support:.3g} s; give a longer "
-        "recording or a smaller support"
+        f"{source}: {samples} samples are too few for a kernel of {support:.3g} s, over which the "
+        "effort is averaged; give a longer recording"
     )
 
 

@@ -15,6 +15,7 @@ from ...catalogue import EffectRecord, effects
 from ...errors import InputError
 from ...fitting.start import largest_command
 from ...plant import Plant
+from ...plant.overlap import terms_of
 from ...plant.presliding import presliding
 from ...plant.stated import Effect
 from ..data.evidence import Evidence
@@ -250,10 +251,7 @@ def present(plant: Plant, record: EffectRecord) -> bool:
     """Whether the plant holds the effect already, as an effect or as a part of its law."""
     if any(effect.name == record.name for effect in plant.effects):
         return True
-    stated = {*plant.friction.parameters, *(f"body.{name}" for name in plant.body)}
-    if plant.friction.record.remembers:
-        stated.add("law.remembers")
-    return not stated.isdisjoint(record.law_terms)
+    return bool(terms_of(plant, record))
 
 
 def _grid(record: EffectRecord, scales: Scales) -> Iterator[Candidate]:

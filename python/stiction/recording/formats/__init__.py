@@ -91,6 +91,11 @@ def _format_of(file: Path) -> Format:
         if suffix in known.suffixes:
             return known
     kinds = "; ".join(f"{known.name} ({' '.join(known.suffixes)})" for known in FORMATS)
+    if suffix == ".toml":
+        raise InputError(
+            f"{file}: is a TOML file, as plants and sessions are, and a recording is wanted here; "
+            f"the kinds read here are {kinds}"
+        )
     given = f"the ending '{file.suffix}' is not known" if suffix else "the file has no ending"
     raise InputError(f"{file}: {given}; the kinds read here are {kinds}")
 

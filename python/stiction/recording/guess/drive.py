@@ -80,7 +80,9 @@ def choose_drive(
     )  # fmt: skip
     # A force beside a current is what a sensor felt, not what drives.
     inputs = [c for c in fit if quantity_of(c) != "force" or c.said.strength == 3 or c.said.wanted]
-    felt = [c for c in fit if c.said.measured or c not in inputs]
+    # No sensor at the machine reads amperes or volts: a current that was measured is the drive's.
+    sensed = [c for c in fit if c.said.measured and quantity_of(c) not in ("current", "voltage")]
+    felt = [c for c in fit if c in sensed or c not in inputs]
     felt_only = len(felt) == len(fit)
     if felt_only and position is not None and not referenced:
         chosen = felt[0]

@@ -68,7 +68,9 @@ class Column:
     @property
     def rises(self) -> bool:
         """Whether it increases, row by row, as a clock does."""
-        return all(np.mean(np.diff(array) > 0.0) >= RISING for array in self.arrays)
+        return all(
+            len(array) > 1 and np.mean(np.diff(array) > 0.0) >= RISING for array in self.arrays
+        )
 
     @property
     def step(self) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from ..._support.units import MOTION_OF_QUANTITY, Motion, find_unit, unit_names
+from ..._support.units import MOTION_OF_QUANTITY, Motion, find_unit, known_unit, unit_names
 from ..._support.wording import commas, did_you_mean
 from ...errors import InputError
 from ..columns import CANONICAL, ROLES, Column, Columns, match_header
@@ -41,9 +41,13 @@ def overrule(found: Guess, columns: Columns) -> Guess:
     taken = {column.name: role for role, column in columns.items()}
     for role, column in columns.items():
         if column.name not in known:
+            bare, _, unit = column.name.rpartition(" ")
+            near = did_you_mean(column.name, known)
+            if bare in known and known_unit(unit):
+                near = f" (a unit stands in brackets: {role}={bare} [{unit}])"
             raise InputError(
-                f"{columns.where}: {role} = '{column.name}' is no column of the file"
-                f"{did_you_mean(column.name, known)}; it has {commas(known)}"
+                f"{columns.where}: {role} = '{column.name}' is no column of the file{near}; it has "
+                f"{commas(known)}"
             )
     told = []
     for each in found.columns:

@@ -398,7 +398,8 @@ class _Guesser:
             if referenced:
                 sentence += (
                     "; of a servo that is given positions name the goal instead of a reference, "
-                    'and state [drive] kind = "servo" in plant.toml'
+                    'and state [drive] kind = "servo" in plant.toml; stiction library holds plants '
+                    "of servos"
                 )
             self.missing["input"] = sentence + self._spoiled("drive")
         return drive

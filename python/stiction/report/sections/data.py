@@ -114,10 +114,17 @@ def _through(through: Mapping[str, Any] | None) -> str:
         told.append(f"Each simulation lasts {horizon}.")
     before, after = through.get("timing_s") or (0.0, 0.0)
     if before or after:
-        scale = scale_for([before, after], "s")
-        times = f"{scale.factor * before:.3g} → {scale.text(after)}".replace("-", "−")
-        told.append(f"The input is stamped {times} early as fitted with it, before → after.")
+        told.append(
+            f"By the fit the time stamps of the input are {_too(before)} before and {_too(after)} "
+            "after what was found is added."
+        )
     return " ".join(told)
+
+
+def _too(early: float) -> str:
+    """By how much stamps are early, s, in words."""
+    way = "early" if early > 0.0 else "late"
+    return f"{1e3 * abs(early):.3g}\N{NO-BREAK SPACE}ms {way}" if early else "right"
 
 
 def _pieces(names: Sequence[str]) -> str:
@@ -130,10 +137,10 @@ def _pieces(names: Sequence[str]) -> str:
 
 
 def _noise(entry: Mapping[str, Any], position: str, effort: str) -> dict[str, str]:
-    count = entry["count"]
+    count, noise = entry["count"], entry["effort"]
     return {
         "recording": entry["recording"],
-        "position": quantity(entry["position"], position, 2),
+        "position": quantity(entry["position"], position, 2) if entry["position"] else "none seen",
         "count": quantity(count, position, 3) if count else "none seen",
-        "effort": scale_for([entry["effort"]], effort).text(entry["effort"], 2),
+        "effort": scale_for([noise], effort).text(noise, 2) if noise else "none seen",
     }
