@@ -48,6 +48,15 @@ def test_both_micro_signs_and_both_centred_dots_are_read() -> None:
     assert find_unit("N\N{DOT OPERATOR}m", "x") is UNITS["N·m"]
 
 
+@pytest.mark.parametrize(
+    ("written", "unit"),
+    [("°", "deg"), ("\N{MASCULINE ORDINAL INDICATOR}", "deg"), ("°C", "degC"), ("°/s", "deg/s"),
+     ("U/min", "rpm"), ("1/min", "rpm"), ("min⁻¹", "rpm")],
+)  # fmt: skip
+def test_signs_that_instruments_print_are_read(written: str, unit: str) -> None:
+    assert find_unit(written, "x") is UNITS[unit]
+
+
 def test_an_unknown_unit_names_its_neighbour_and_the_field() -> None:
     with pytest.raises(InputError, match=r"^here: the unit 'Degr' .*did you mean 'deg'.*rpm"):
         find_unit("Degr", "here")

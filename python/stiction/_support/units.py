@@ -99,7 +99,18 @@ MOTION_OF_QUANTITY: Final[dict[str, Motion]] = {
 """The kind of motion that a quantity belongs to; what is not here fits both."""
 
 # Unicode has two micro signs and two centred dots that look alike; both are typed.
-_LOOK_ALIKES = str.maketrans({"\N{GREEK SMALL LETTER MU}": "µ", "\N{DOT OPERATOR}": "·"})
+_LOOK_ALIKES = str.maketrans(
+    {
+        "\N{GREEK SMALL LETTER MU}": "µ",
+        "\N{DOT OPERATOR}": "·",
+        "\N{MASCULINE ORDINAL INDICATOR}": "°",
+    }
+)
+_SIGNS: Final = {
+    **{"°": "deg", "°/s": "deg/s", "°C": "degC"},
+    **dict.fromkeys(("U/min", "1/min", "r/min", "rev/min", "min⁻¹", "min^-1"), "rpm"),
+}
+"""Other ways in which instruments write a unit."""
 
 
 _WORDS: Final = {
@@ -110,12 +121,7 @@ _WORDS: Final = {
     "degrees c": "degC",
     "celsius": "degC",
     "degree": "deg",
-    "°": "deg",
     "radian": "rad",
-    "u/min": "rpm",
-    "1/min": "rpm",
-    "r/min": "rpm",
-    "rev/min": "rpm",
     "turn": "rev",
     "revol": "rev",
     "newton m": "Nm",
@@ -136,7 +142,8 @@ _SHARES: Final = frozenset({"%", "‰", "percent", "permille", "% rated", "pct"}
 
 def known_unit(name: str) -> Unit | None:
     """The unit written ``name``, None where there is none."""
-    return UNITS.get(name.strip().translate(_LOOK_ALIKES))
+    written = name.strip().translate(_LOOK_ALIKES)
+    return UNITS.get(_SIGNS.get(written, written))
 
 
 def find_unit(name: str, where: str) -> Unit:
