@@ -128,7 +128,12 @@ PRESENTATIONS: Final[dict[str, Presentation]] = {
         ),
     ),
     "effort_dependent_friction": Presentation(
-        title="effort-dependent friction", over="effort along the motion"
+        title="effort-dependent friction",
+        over="effort along the motion",
+        moved=Words(
+            "friction grows with the effort that moves the contact",
+            "measure at the efforts that matter, and record them",
+        ),
     ),
     "encoder_eccentricity": Presentation(
         title="eccentric encoder",

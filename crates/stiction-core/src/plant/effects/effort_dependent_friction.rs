@@ -9,7 +9,7 @@ parameters! {
     /// Parameters of [`EffortDependentFriction`].
     pub struct EffortDependentFrictionParameters {
         share: One, "dry friction added per effort of the motor",
-            default Value(0.0), neutral Some(0.0), typical 0.1, bounds -1.0, 10.0;
+            default Value(0.0), neutral Some(0.0), typical 0.1, bounds 0.0, 1.0;
     }
 }
 
