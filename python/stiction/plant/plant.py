@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -43,6 +43,14 @@ _logger = logging.getLogger(__name__)
 
 GRAVITY: Final = 9.80665
 """m/s²."""
+
+
+@cache
+def _by_motor() -> tuple[frozenset[str], frozenset[str]]:
+    """Effects by which friction grows with the effort of the motor, and what laws call that."""
+    grows = [record for record in effects() if record.by_motor]
+    terms = frozenset(name for record in grows for name in record.law_terms)
+    return frozenset(record.name for record in grows), terms
 
 
 @dataclass(frozen=True)
@@ -479,11 +487,10 @@ class Plant(metaclass=FromFile):
     @property
     def friction_by_motor(self) -> bool:
         """Whether friction grows with the effort of the motor, by an effect or by the law."""
-        grows = [record for record in effects() if record.by_motor]
-        terms = {name for record in grows for name in record.law_terms}
-        stated = {name for name, p in self.friction.parameters.items() if p.value or not p.fixed}
-        named = {record.name for record in grows}
-        return not terms.isdisjoint(stated) or any(e.name in named for e in self.effects)
+        names, terms = _by_motor()
+        stated = (self.friction.parameters.get(name) for name in terms)
+        by_law = any(p is not None and (p.value or not p.fixed) for p in stated)
+        return by_law or any(effect.name in names for effect in self.effects)
 
     @property
     def shifts_mass(self) -> bool:
