@@ -15,6 +15,7 @@ from ...fitting.rows import timing_bound
 from ...plant import Plant
 from ..adequacy.exact_forms import several
 from ..data.evidence import Evidence
+from ..data.noise import input_noise
 from ..data.replay import centre, common_bias, reading_power
 from ..defaults import ALPHA, SMALLEST
 from ..records import CandidateRow
@@ -62,6 +63,8 @@ FALLS: Final = frozenset(record.name for record in effects() if record.falls)
 """Falls of friction with speed: where there is one, or is not to be looked for, a lag has none."""
 SWINGS: Final = "second mass"
 """Hook of effects whose mass swings faster than the samples of a servo show."""
+MUCH_NOISE: Final = 0.3
+"""Noise of a logged effort over what is left, from which on it looks like friction by that effort."""
 LEANS: Final = 0.5
 """Share of the greatest offset of timing from which on a base may have taken a delay for one."""
 RELATED: Final = 0.2
@@ -183,6 +186,8 @@ def _candidates(
         if not reason and record.by_motor and "load" in channels:
             # The motor bears the load first of all: beside that both would be one.
             reason = "not tried: the load is known, and friction that grows with it is tried"
+        if not reason and record.by_motor and _is_noisy(evidence, base):
+            reason = "not testable: the effort that friction would grow with has noise in its log"
         if reason:
             found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
         else:
@@ -192,6 +197,21 @@ def _candidates(
             swings = base.plant.inertia > 0.0
             tried += [each for each in found_at if swings or not each.resonance]
     return tried
+
+
+def _is_noisy(evidence: Evidence, base: Model) -> bool:
+    """Whether noise of the logged effort is much of what is left along the measured motion.
+
+    It would be in the residual and in the friction by that effort alike, and explain itself.
+    """
+    if evidence.simulated:
+        return False
+    left, noise = [], []
+    for rows in evidence.train:
+        own = rows.residual(base.plant, base.nuisances)[rows.mask]
+        left.append(float(np.sqrt(np.mean(own**2))))
+        noise.append(input_noise(rows, base.plant, base.nuisances))
+    return float(np.median(noise)) > MUCH_NOISE * float(np.median(left))
 
 
 def _refused(evidence: Evidence, plant: Plant, record: EffectRecord) -> str:
