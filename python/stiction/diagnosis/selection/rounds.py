@@ -64,7 +64,7 @@ FALLS: Final = frozenset(record.name for record in effects() if record.falls)
 SWINGS: Final = "second mass"
 """Hook of effects whose mass swings faster than the samples of a servo show."""
 MUCH_NOISE: Final = 0.3
-"""Noise of a logged effort over what is left, from which on it looks like friction by that effort."""
+"""Noise of a logged effort over what is left from which on it looks like friction by it."""
 LEANS: Final = 0.5
 """Share of the greatest offset of timing from which on a base may have taken a delay for one."""
 RELATED: Final = 0.2
