@@ -46,11 +46,9 @@ GRAVITY: Final = 9.80665
 
 
 @cache
-def _by_motor() -> tuple[frozenset[str], frozenset[str]]:
-    """Effects by which friction grows with the effort of the motor, and what laws call that."""
-    grows = [record for record in effects() if record.by_motor]
-    terms = frozenset(name for record in grows for name in record.law_terms)
-    return frozenset(record.name for record in grows), terms
+def _by_motor() -> frozenset[str]:
+    """Effects by which friction grows with the effort of the motor."""
+    return frozenset(record.name for record in effects() if record.by_motor)
 
 
 @dataclass(frozen=True)
@@ -486,11 +484,8 @@ class Plant(metaclass=FromFile):
 
     @property
     def friction_by_motor(self) -> bool:
-        """Whether friction grows with the effort of the motor, by an effect or by the law."""
-        names, terms = _by_motor()
-        stated = (self.friction.parameters.get(name) for name in terms)
-        by_law = any(p is not None and (p.value or not p.fixed) for p in stated)
-        return by_law or any(effect.name in names for effect in self.effects)
+        """Whether an effect lets friction grow with the effort of the motor."""
+        return any(effect.name in _by_motor() for effect in self.effects)
 
     @property
     def shifts_mass(self) -> bool:

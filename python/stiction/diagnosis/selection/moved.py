@@ -115,9 +115,13 @@ def _powers(models: list[Model], evidence: Evidence) -> _Powers | None:
     found = []
     for model in models:
         plant = _as_stiff_as_shown(model.plant, windows.forms)
-        # What another plant lacks would be in the states from which this one sets out.
-        stiffen([rows.form for rows in judged], plant)
-        left = finite(windows.residual(plant, model.nuisances, judged))
+        try:
+            # What another plant lacks would be in the states from which this one sets out.
+            stiffen([rows.form for rows in judged], plant)
+            left = finite(windows.residual(plant, model.nuisances, judged))
+        except InputError:
+            # Too stiff or too damped for samples so far apart: nothing is asked.
+            return None
         found.append(power(left * (inertia / plant.inertia)))
     return _Powers(found, steady)
 
