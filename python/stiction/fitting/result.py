@@ -17,7 +17,7 @@ from .._support.json_text import json_of
 from ..plant import Plant
 from ..residual.compared import comparison_of
 from .statistics import correlations
-from .waves import amplitude_of, as_waves, parts_of, phase_of, waves_of
+from .waves import as_waves, told_as, waves_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,11 +178,8 @@ class FitResult:
         """What is told in a table: of a wave its amplitude and phase in place of its parts."""
         waves = self.waves
         for path, p in self.parameters.items():
-            parts = parts_of(path)
-            if parts is None or amplitude_of(parts) not in waves:
-                yield path, p
-            elif path == parts[0]:
-                yield from ((name, waves[name]) for name in (amplitude_of(parts), phase_of(parts)))
+            name = told_as(path)
+            yield (name, waves[name]) if name in waves else (path, p)
 
     def _headline(self) -> list[str]:
         by = comparison_of(self.plant)
@@ -217,13 +214,7 @@ class FitResult:
 
     def _told_correlations(self) -> list[str]:
         """The largest correlations of parameters that are known at all, in one sentence."""
-        waves = self.waves
-        names = []
-        for path in self.parameters:
-            parts = parts_of(path)
-            if parts is not None and amplitude_of(parts) in waves:
-                path = amplitude_of(parts) if path == parts[0] else phase_of(parts)
-            names.append(path)
+        names = [name for name, _ in self._shown()]
         between = correlations(as_waves(self.parameters, self.covariance))
         found = [
             (abs(r), f"{names[i]} and {names[k]} {r:+.2f}")

@@ -17,7 +17,7 @@ from .._support.arrays import FloatArray
 if TYPE_CHECKING:
     from .result import FitParameter
 
-__all__ = ["amplitude_of", "as_waves", "parts_of", "phase_of", "waves_of"]
+__all__ = ["amplitude_of", "as_waves", "parts_of", "phase_of", "told_as", "waves_of"]
 
 _TAILS: Final = ("", "_2")
 
@@ -49,6 +49,14 @@ def amplitude_of(parts: Parts) -> str:
 def phase_of(parts: Parts) -> str:
     """Path of its phase."""
     return "phase".join(parts[0].rsplit("cosine", 1))
+
+
+def told_as(path: str) -> str:
+    """Path by which a parameter is told: of a cosine the amplitude, of a sine the phase."""
+    parts = parts_of(path)
+    if parts is None:
+        return path
+    return amplitude_of(parts) if path == parts[0] else phase_of(parts)
 
 
 def waves_of(
