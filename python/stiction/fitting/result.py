@@ -17,7 +17,7 @@ from .._support.json_text import json_of
 from ..plant import Plant
 from ..residual.compared import comparison_of
 from .statistics import correlations
-from .waves import as_waves, told_as, waves_of
+from .waves import as_waves, shown_path, waves_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,7 +178,7 @@ class FitResult:
         """What is told in a table: of a wave its amplitude and phase in place of its parts."""
         waves = self.waves
         for path, p in self.parameters.items():
-            name = told_as(path)
+            name = shown_path(path)
             yield (name, waves[name]) if name in waves else (path, p)
 
     def _headline(self) -> list[str]:

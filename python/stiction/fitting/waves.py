@@ -17,7 +17,7 @@ from .._support.arrays import FloatArray
 if TYPE_CHECKING:
     from .result import FitParameter
 
-__all__ = ["amplitude_of", "as_waves", "parts_of", "phase_of", "told_as", "waves_of"]
+__all__ = ["amplitude_of", "as_waves", "parts_of", "phase_of", "shown_path", "waves_of"]
 
 _TAILS: Final = ("", "_2")
 
@@ -51,7 +51,7 @@ def phase_of(parts: Parts) -> str:
     return "phase".join(parts[0].rsplit("cosine", 1))
 
 
-def told_as(path: str) -> str:
+def shown_path(path: str) -> str:
     """Path by which a parameter is told: of a cosine the amplitude, of a sine the phase."""
     parts = parts_of(path)
     if parts is None:
