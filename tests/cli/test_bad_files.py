@@ -330,7 +330,7 @@ SESSIONS = [
     session("session names itself as plant", '"plant.toml"', '"session.toml"', "plant",
             "session.toml", "itself"),
     Kind("recording names the plant", lambda desk: desk.instead("plant.toml"),
-         ("plant.toml", "'.toml'", ".csv")),
+         ("plant.toml", "is a TOML file", ".csv")),
     Kind("no effort where the motion is prescribed",
          lambda desk: desk.edit(desk.session, 'effort = "u"', ""),
          ("run.csv", "effort", "t, u, q", "[columns]"), moved),
