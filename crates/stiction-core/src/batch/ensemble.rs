@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::batch::kept::Kept;
 use crate::batch::lanes::{self, Job, Width};
 use crate::friction::Statistics;
 use crate::integrate::Integrator;
@@ -488,49 +489,10 @@ fn simulate(
     let samples = plan.samples;
     let inputs = plan.inputs.of(member, samples);
     let around = Surroundings::from(plan.loads.of(member, samples));
-    match plan.keep {
-        Keep::Every(every) => {
-            let mut left = every;
-            let mut row = 0;
-            running.simulate(inputs, around, plan.dt, |_, run, machine, output| {
-                left -= 1;
-                if left == 0 {
-                    for (kind, values) in kinds.iter().zip(own.iter_mut()) {
-                        values[row] = kind.read(run, machine, output);
-                    }
-                    (left, row) = (every, row + 1);
-                }
-            })
-        }
-        Keep::Last => running.simulate(inputs, around, plan.dt, |k, run, machine, output| {
-            if k + 1 == samples {
-                for (kind, values) in kinds.iter().zip(own.iter_mut()) {
-                    values[0] = kind.read(run, machine, output);
-                }
-            }
-        }),
-        Keep::Rms(target) => {
-            let target = target.of(member, samples);
-            own.iter_mut().for_each(|values| values[0] = 0.0);
-            let done = running.simulate(inputs, around, plan.dt, |k, run, machine, output| {
-                for (kind, values) in kinds.iter().zip(own.iter_mut()) {
-                    let beside = kind.read(run, machine, output) - target.at(k);
-                    values[0] += beside * beside;
-                }
-            });
-            own.iter_mut().for_each(|values| values[0] = (values[0] / samples as f64).sqrt());
-            done
-        }
-        Keep::Extremes => {
-            own.iter_mut()
-                .for_each(|values| values.copy_from_slice(&[f64::INFINITY, f64::NEG_INFINITY]));
-            running.simulate(inputs, around, plan.dt, |_, run, machine, output| {
-                for (kind, values) in kinds.iter().zip(own.iter_mut()) {
-                    let seen = kind.read(run, machine, output);
-                    values[0] = values[0].min(seen);
-                    values[1] = values[1].max(seen);
-                }
-            })
-        }
-    }
+    let target = if let Keep::Rms(target) = plan.keep { target } else { Rows::Same(0.0) };
+    let target = target.of(member, samples);
+    let mut kept = Kept::new(plan.keep, target, samples, kinds, own);
+    running.simulate_rows(inputs, around, |_| 0.0, plan.dt, &mut kept)?;
+    kept.end();
+    Ok(())
 }

@@ -181,7 +181,7 @@ pub(super) fn earliest<S: Scalar, L: FrictionLaw<S>, P: Stepper<S, L>>(
             law.margin(state, trial, motion, event)
         };
         let beyond = left(&attempt).re();
-        let at = locate(span, beyond, |h| left(&apart(stepper, law, state, h)));
+        let at = locate(span, beyond, &mut |h| left(&apart(stepper, law, state, h)));
         attempt = apart(stepper, law, state, at);
         if at.re() <= 0.0 {
             return (event, at, attempt);
@@ -205,8 +205,8 @@ const ENCLOSED: f64 = 1e-13;
 ///
 /// Found on real parts by the secant of the last two attempts, bisection as a guard; two Newton steps
 /// in the full number type then carry the derivatives of the time of the event (implicit function
-/// theorem), where there are any.
-fn locate<S: Scalar>(span: S, beyond: f64, mut margin: impl FnMut(S) -> S) -> S {
+/// theorem), where there are any. One search for all laws and steps: what it asks costs more than a call.
+fn locate<S: Scalar>(span: S, beyond: f64, margin: &mut dyn FnMut(S) -> S) -> S {
     let (mut low, mut high) = (0.0, span.re());
     let mut at_low = margin(S::constant(0.0)).re();
     if at_low <= 0.0 || high <= 0.0 {
@@ -273,7 +273,7 @@ mod tests {
     fn an_event_is_located_with_the_derivative_of_its_time() {
         // margin(t) = a − t³ is zero at a^(1/3).
         let a = Dual::variable(0.3, 2);
-        let at = locate(Dual::constant(1.0), 0.3 - 1.0, |t| a - t * t * t);
+        let at = locate(Dual::constant(1.0), 0.3 - 1.0, &mut |t| a - t * t * t);
         assert!((at.re() - 0.3_f64.cbrt()).abs() < 1e-15);
         let exact = 1.0 / (3.0 * 0.3_f64.cbrt().powi(2));
         assert!((at.partial(2) - exact).abs() < 1e-9 * exact);
@@ -281,14 +281,14 @@ mod tests {
 
     #[test]
     fn an_event_at_the_start_or_the_end_stays_inside_the_step() {
-        assert_eq!(locate(1.0, -1.0, |t: f64| -1e-20 - t), 0.0);
-        assert_eq!(locate(1.0, 0.0, |t: f64| 1.0 - t), 1.0);
+        assert_eq!(locate(1.0, -1.0, &mut |t: f64| -1e-20 - t), 0.0);
+        assert_eq!(locate(1.0, 0.0, &mut |t: f64| 1.0 - t), 1.0);
     }
 
     #[test]
     fn an_event_takes_few_attempts_and_a_jump_does_not_mislead() {
         let mut attempts = 0;
-        let at = locate(1e-4, (-0.3_f64).exp() - 0.9, |t: f64| {
+        let at = locate(1e-4, (-0.3_f64).exp() - 0.9, &mut |t: f64| {
             attempts += 1;
             (-3e3 * t).exp() - 0.9
         });
@@ -296,8 +296,8 @@ mod tests {
         assert!(attempts <= 8, "{attempts}");
         for jump in [1e-9, 0.3, 0.999_999] {
             for after in [-1.0, -1e-12] {
-                let margin = |t: f64| if t < jump { 1.0 } else { after * (0.5 + t) };
-                let at = locate(1.0, margin(1.0), margin);
+                let mut margin = |t: f64| if t < jump { 1.0 } else { after * (0.5 + t) };
+                let at = locate(1.0, margin(1.0), &mut margin);
                 assert!((at - jump).abs() < 1e-12, "{at} {jump}");
             }
         }
@@ -307,7 +307,7 @@ mod tests {
     fn a_margin_that_round_off_hides_ends_the_search() {
         let mut attempts = 0;
         let coarse = |t: f64| ((0.3 - t) * 1e-3 + 1e3) - 1e3;
-        let at = locate(1.0, coarse(1.0), |t: f64| {
+        let at = locate(1.0, coarse(1.0), &mut |t: f64| {
             attempts += 1;
             coarse(t)
         });

@@ -33,11 +33,13 @@ impl Motor {
         kernel: &RowKernel<'_>,
     ) -> Result<Vec<f64>> {
         motion.check()?;
-        let mut traces = [(); 3].map(|()| vec![0.0; motion.samples()]);
-        let places = traces.each_mut().map(Vec::as_mut_slice);
-        self.running.follow_about(motion, &mut ColumnTraces(places));
+        let mut efforts = [(); 4].map(|()| vec![0.0; motion.samples()]);
+        let places = efforts.each_mut().map(Vec::as_mut_slice);
+        self.running.follow_about(motion, &mut EffortRows(places));
+        let [driven, ambient, mut needed, ahead] = efforts;
+        needed.iter_mut().zip(&ambient).for_each(|(friction, ambient)| *friction -= ambient);
         let mut rows = vec![0.0; kernel.rows(motion.samples())];
-        kernel.column(traces.each_ref().map(Vec::as_slice), &mut rows);
+        kernel.column([&needed, &driven, &ahead], &mut rows);
         Ok(rows)
     }
 
@@ -48,7 +50,7 @@ impl Motor {
         windows: &Windows<'_>,
     ) -> Result<Vec<f64>> {
         let mut sums = Vec::with_capacity(windows.number(motion.samples()));
-        let shot = self.running.shoot(motion, windows, |_, sum| sums.push(sum));
+        let shot = self.running.shoot(motion, windows, |_| 0.0, &mut |_, sum| sums.push(sum));
         shot.map_err(|error| self.spec.blame(error))?;
         Ok(sums)
     }
@@ -78,19 +80,6 @@ impl SeesAbout<f64> for EffortRows<'_> {
     fn see(&mut self, k: usize, efforts: &Efforts<f64>) {
         let Efforts { driven, ambient, friction, ahead, .. } = *efforts;
         for (row, value) in self.0.iter_mut().zip([driven, ambient, friction, ahead]) {
-            row[k] = value;
-        }
-    }
-}
-
-/// Rows of what a column is made of, see [`RowKernel::column`].
-struct ColumnTraces<'a>([&'a mut [f64]; 3]);
-
-impl SeesAbout<f64> for ColumnTraces<'_> {
-    #[inline(always)]
-    fn see(&mut self, k: usize, efforts: &Efforts<f64>) {
-        let needed = efforts.friction - efforts.ambient;
-        for (row, value) in self.0.iter_mut().zip([needed, efforts.driven, efforts.ahead]) {
             row[k] = value;
         }
     }

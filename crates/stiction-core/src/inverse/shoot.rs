@@ -46,20 +46,6 @@ impl Windows<'_> {
 }
 
 impl<S: Scalar> Running<S> {
-    /// Simulates one window after the other and reports the weighted sum of each: of what the sensor
-    /// would read less what it read at the start.
-    ///
-    /// A window starts at the measured position and velocity, with friction, effects and delayed
-    /// inputs as they are after following the motion up to there. What it does in between is its own.
-    pub fn shoot(
-        &mut self,
-        motion: &MeasuredMotion<'_>,
-        windows: &Windows<'_>,
-        land: impl FnMut(usize, S),
-    ) -> Result<()> {
-        self.shoot_under(motion, windows, |_| S::constant(0.0), land)
-    }
-
     /// ω·h above which a sample is divided along a measured motion: as always where samples show the
     /// ring, and less finely the faster it is for them.
     fn phase_of_samples(&self, dt: f64) -> f64 {
@@ -75,13 +61,17 @@ impl<S: Scalar> Running<S> {
         kept.clamp(LONGEST_PHASE, COARSE_PHASE).max(self.phase_of_samples(dt))
     }
 
-    /// As [`Self::shoot`], with an effort added to each sample of every window.
-    fn shoot_under(
+    /// Simulates one window after the other, with an effort added to each of its samples, and reports the
+    /// weighted sum of each: of what the sensor would read less what it read at the start.
+    ///
+    /// A window starts at the measured position and velocity, with friction, effects and delayed
+    /// inputs as they are after following the motion up to there. What it does in between is its own.
+    pub fn shoot(
         &mut self,
         motion: &MeasuredMotion<'_>,
         windows: &Windows<'_>,
         added: impl Fn(usize) -> S,
-        mut land: impl FnMut(usize, S),
+        land: &mut dyn FnMut(usize, S),
     ) -> Result<()> {
         let MeasuredMotion { positions, inputs, around, dt, .. } = *motion;
         let held: Vec<f64>;
@@ -182,6 +172,28 @@ fn rows(number: usize, windows: usize) -> Vec<f64> {
     vec![0.0; number * windows]
 }
 
+/// Equal parts of a window, of which `number` from the `first` on have a derivative each by an effort
+/// that acts during them.
+struct Parts {
+    length: usize,
+    last: usize,
+    first: usize,
+    number: usize,
+}
+
+impl Parts {
+    const NONE: Self = Self { length: 1, last: 0, first: 0, number: 0 };
+
+    /// The effort of each sample: one function whatever is asked, for a loop is compiled for each.
+    fn effort(self) -> impl Fn(usize) -> Dual {
+        let Self { length, last, first, number } = self;
+        move |sample| match (sample / length).min(last).checked_sub(first) {
+            Some(column) if column < number => Dual::variable(0.0, column),
+            _ => Dual::constant(0.0),
+        }
+    }
+}
+
 /// The sums of all windows, differentiated by the parameters at these paths.
 pub fn shoot_sensitivity(
     spec: &MotorSpec,
@@ -193,7 +205,7 @@ pub fn shoot_sensitivity(
     let width = windows.number(motion.samples());
     let mut result = rows(paths.len(), width);
     passes(spec, start, paths, |running, first, number| {
-        running.shoot(motion, windows, |window, sum| {
+        running.shoot(motion, windows, Parts::NONE.effort(), &mut |window, sum| {
             for column in 0..number {
                 result[(first + column) * width + window] = sum.partial(column);
             }
@@ -214,18 +226,14 @@ pub fn shoot_response(
 ) -> Result<Vec<f64>> {
     let width = windows.number(motion.samples());
     let parts = parts.clamp(1, windows.weights.len().max(1));
-    let length = windows.weights.len() / parts;
-    let part = |k: usize| (k / length.max(1)).min(parts - 1);
+    let length = (windows.weights.len() / parts).max(1);
     let values: Vec<f64> = spec.parameters().into_iter().map(|(_, value)| value).collect();
     let mut result = rows(parts, width);
     for first in (0..parts).step_by(COLUMNS) {
         let number = COLUMNS.min(parts - first);
-        let added = |k: usize| match part(k).checked_sub(first) {
-            Some(column) if column < number => Dual::variable(0.0, column),
-            _ => Dual::constant(0.0),
-        };
         let mut running = seeded(spec, start, &values, &[]);
-        let shot = running.shoot_under(motion, windows, added, |window, sum| {
+        let added = Parts { length, last: parts - 1, first, number }.effort();
+        let shot = running.shoot(motion, windows, added, &mut |window, sum| {
             for column in 0..number {
                 result[(first + column) * width + window] = sum.partial(column);
             }
