@@ -23,6 +23,7 @@ PREFIX ?= /usr/local
 EDITION := $(shell sed -n 's/^edition = "\(.*\)"/\1/p' Cargo.toml)
 # cargo fmt follows `mod` lines; those of laws and effects stand in macros, which it does not enter.
 RUST := $(shell find crates benches -name '*.rs')
+LIST_NEEDED := 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"])'
 SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find crates -name '*.rs' -o -name Cargo.toml)
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 export CARGO_TERM_PROGRESS_WHEN := never
@@ -52,10 +53,11 @@ toolchain:
 	[ "$$least" = "$(RUST_NEEDED)" ] || { \
 		echo "rustc $$have is older than $(RUST_NEEDED); run: rustup update stable" >&2; exit 1; }
 
-# What the demo needs and no more.
+# What the demo needs and no more. It is fetched while the core compiles.
 $(INSTALLED): $(SOURCES) | toolchain
 	[ -x $(BIN)/python ] || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet $$($(BIN)/python -c $(LIST_NEEDED)) & \
+	$(BIN)/python -m pip install --quiet --no-deps --editable . && wait $$!
 	touch $@
 
 # The tools of development beside it; what was compiled stays.

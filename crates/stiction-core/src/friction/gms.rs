@@ -348,7 +348,6 @@ impl<S: Scalar> FrictionLaw<S> for Gms<S> {
         state.dry() * channels.level + self.parameters.viscous * channels.viscous_level * velocity
     }
 
-    #[inline]
     fn advance(
         &self,
         state: &GmsState<S>,

@@ -170,7 +170,6 @@ fn bends<S: Scalar>(r: S, n: S, rising: bool) -> S {
 
 impl<S: Scalar> Leuven<S> {
     /// t = sgn(F_h·v)·|F_h/s|ⁿ.
-    #[inline]
     fn slip(&self, force: S, velocity: S) -> Slip<S> {
         let (level, steepness) = self.bristle.level.at(velocity);
         let a = force * sign(velocity.re()) / level;
@@ -376,7 +375,6 @@ impl<S: Scalar> FrictionLaw<S> for Leuven<S> {
         self.bristle.friction(state.spring.force, &slip, velocity, channels)
     }
 
-    #[inline]
     fn advance(
         &self,
         state: &LeuvenState<S>,

@@ -207,7 +207,6 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         self.0.force(state.deflection, &slip, velocity, channels)
     }
 
-    #[inline]
     fn advance(
         &self,
         state: &BristleState<S>,

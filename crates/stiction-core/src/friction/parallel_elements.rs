@@ -282,7 +282,6 @@ impl<S: Scalar> FrictionLaw<S> for ParallelElements<S> {
         state.dry() * channels.level + self.parameters.viscous * channels.viscous_level * velocity
     }
 
-    #[inline]
     fn advance(
         &self,
         state: &ParallelElementsState<S>,

@@ -80,7 +80,6 @@ impl<S: Scalar> Plane<S> {
 
     /// Force from a reverse point over the way 2·h with its middle at m, both along the way, and
     /// the slope at its end.
-    #[inline]
     fn risen(&self, m: S, h: S) -> Response<S> {
         let (mm, hh) = (m * m, h * h);
         let force =
@@ -273,7 +272,6 @@ impl<S: Scalar> FrictionLaw<S> for Preisach<S> {
             + self.parameters.viscous * channels.viscous_level * velocity
     }
 
-    #[inline]
     fn advance(
         &self,
         state: &PreisachState<S>,

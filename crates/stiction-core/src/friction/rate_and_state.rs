@@ -175,7 +175,6 @@ impl<S: Scalar> RateAndState<S> {
     }
 
     /// Dry friction at level 1 at a velocity that is not 0, its slope by velocity and by φ.
-    #[inline]
     fn dry(&self, velocity: S, log_age: S) -> (S, S, S) {
         let p = &self.parameters;
         let speed = velocity.abs();
@@ -331,7 +330,6 @@ impl<S: Scalar> FrictionLaw<S> for RateAndState<S> {
         dry * channels.level + self.parameters.viscous * channels.viscous_level * velocity
     }
 
-    #[inline]
     fn advance(
         &self,
         state: &RateAndStateState<S>,

@@ -284,7 +284,6 @@ pub fn step<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
 /// (the reference integrator by all of it, in steps of its own); a step is one piece where `pieces` is 1.
 /// Where that is too much work, it ends in the middle. `BARE` promises
 /// [`Machine::is_bare`]: the same to the bit, without asking at every step for what is not there.
-#[inline]
 #[allow(clippy::too_many_arguments)] // the parts of a motor, borrowed apart
 pub fn sample<S: Scalar, L: FrictionLaw<S>, const BARE: bool>(
     machine: &Machine<S>,
