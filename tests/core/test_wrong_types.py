@@ -194,6 +194,18 @@ REFUSED = {
         lambda: motor().simulate(ROWS * 1j, DT),
         "current is not an array of numbers: the type is complex128",
     ),
+    "a complex number among dates": (
+        lambda: motor().simulate([0.0, np.complex128(1j), np.datetime64("2020")], DT),
+        "current is not an array of numbers: must be real number, not complex128",
+    ),
+    "a word among targets": (
+        lambda: st.simulate_ensemble(motor(), np.array([1.0, "2"], dtype=object), DT),
+        "currents is not an array of numbers: '2' is among them",
+    ),
+    "half a surrogate for what acts": (
+        lambda: motor().gradient(ROWS, DT, ROWS, ROWS, by="\ud800"),
+        "give 'input' or 'load'",
+    ),
     "dates for currents": (
         lambda: motor().simulate(ROWS.astype("datetime64[s]"), DT),
         "current is not an array of numbers: the type is datetime64[s]",

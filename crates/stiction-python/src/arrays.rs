@@ -64,6 +64,15 @@ fn converted<'py>(name: &str, values: &Bound<'py, PyAny>) -> PyResult<Bound<'py,
     if kind != "O" && !KINDS.contains(&kind) {
         return Err(wrong(&format_args!("the type is {dtype}")));
     }
+    // Of those numpy would take the real half of a complex one, and the number in a date.
+    if kind == "O" {
+        for item in array.getattr("flat")?.try_iter()? {
+            let item = item?;
+            if !item.is_none() {
+                real(&item).map_err(refused)?;
+            }
+        }
+    }
     let options = PyDict::new(py);
     options.set_item("dtype", "float64")?;
     options.set_item("order", "C")?;

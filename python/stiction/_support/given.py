@@ -347,6 +347,12 @@ def real(given: Any) -> npt.NDArray[Any]:
     array = np.asarray(given)
     if array.dtype.kind not in _REAL:
         raise TypeError(f"the type is {array.dtype}")
+    if array.dtype.kind == "O":
+        for item in array.flat:
+            if isinstance(item, complex | str | bytes | np.generic) and not isinstance(
+                item, np.bool_ | np.integer | np.floating
+            ):
+                raise TypeError(f"{brief(item)} is among them")
     return array
 
 

@@ -10,7 +10,7 @@ use stiction_core::sensitivity::{
 use stiction_core::signatures::{signature_columns, signatures};
 
 use super::Motor;
-use crate::arguments::{Names, candidates_of, gains_of, threads_of};
+use crate::arguments::{Names, Text, candidates_of, gains_of, threads_of};
 use crate::arrays::{Around, Each, one_row, rising, target};
 use crate::error::{IntoPython, input_error, is_finite, outcome};
 use crate::kernel::RowKernel;
@@ -411,7 +411,10 @@ impl Motor {
     /// ------
     /// InputError
     ///     As for ``simulate``; weights that are not as many as the samples.
-    #[pyo3(signature = (current, dt, position, velocity, *, by="input", load=None, temperature=None, enabled=None, transmitted=None, strict=true))]
+    #[pyo3(
+        signature = (current, dt, position, velocity, *, by=Text("input".to_owned()), load=None, temperature=None, enabled=None, transmitted=None, strict=true),
+        text_signature = "($self, current, dt, position, velocity, *, by='input', load=None, temperature=None, enabled=None, transmitted=None, strict=True)"
+    )]
     #[allow(clippy::too_many_arguments)] // keywords of the Python class
     fn gradient<'py>(
         &self,
@@ -420,14 +423,14 @@ impl Motor {
         dt: &Bound<'py, PyAny>,
         position: &Bound<'py, PyAny>,
         velocity: &Bound<'py, PyAny>,
-        by: &str,
+        by: Text,
         load: Option<&Bound<'py, PyAny>>,
         temperature: Option<&Bound<'py, PyAny>>,
         enabled: Option<&Bound<'py, PyAny>>,
         transmitted: Option<&Bound<'py, PyAny>>,
         strict: bool,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let by = match by {
+        let by = match by.0.as_str() {
             "input" => Acting::Input,
             "load" => Acting::Load,
             other => {
