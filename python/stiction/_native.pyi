@@ -50,6 +50,7 @@ def least_squares(
     tolerance: float,
     nothing: float,
     straight: bool,
+    kinked: bool,
     damping: float,
     threads: int,
 ) -> tuple[_Floats, float, bool, bool]: ...

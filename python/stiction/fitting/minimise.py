@@ -451,6 +451,7 @@ class _Minimiser:
             tolerance=self.converged,
             nothing=self.rounding,
             straight=not self.variables.paths,
+            kinked=self.rows[0].form.simulated,
             damping=BOLD if self.rows[0].form.simulated else FIRST_DAMPING,
         )
 

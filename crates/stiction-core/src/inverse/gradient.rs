@@ -51,11 +51,13 @@ pub fn gradient(
     let values: Vec<f64> = spec.parameters().into_iter().map(|(_, value)| value).collect();
     let mut standing = start.clone();
     let mut found = vec![0.0; samples];
-    // Each run may cost what a simulation may.
+    // All runs together may cost what a simulation may, and beside that a step for each of their samples.
+    let runs = samples.div_ceil(COLUMNS) as f64;
+    let steps = runs * samples as f64 * (work::STEP * work::DERIVATIVES) as f64;
+    let mut meter = Meter::new(work::allowed(samples) + 0.5 * steps);
     for first in (0..samples).step_by(COLUMNS) {
         interrupt::check()?;
         let mut running = seeded(spec, (&standing).into(), &values, &[]);
-        let mut meter = Meter::new(work::allowed(samples));
         let mut sum = Dual::constant(0.0);
         for (k, input) in inputs.iter().enumerate().skip(first) {
             let seed = (k < first + COLUMNS).then(|| Dual::variable(0.0, k - first));

@@ -9,8 +9,8 @@ use crate::friction::Motion;
 use crate::math::scalar::{Scalar, sign};
 use crate::support::work;
 
-/// Passes to a root that come with a step; three powers each, those beyond cost as much as steps.
-const PASSES_OF_A_STEP: usize = 8;
+/// Passes to a root that come with a step; each of those beyond, with its three powers, costs as much as one.
+const PASSES_OF_A_STEP: usize = 3;
 
 /// A step of the series.
 #[derive(Debug, Clone, Copy)]
@@ -87,7 +87,7 @@ pub fn step<S: Scalar>(
     let mut force = uncrept;
     for pass in 0..60 {
         if pass >= PASSES_OF_A_STEP {
-            work::spend(2 * work::STEP);
+            work::spend(work::STEP);
         }
         let (_, _, value, rise) = needed(force);
         let miss = force - value;
@@ -160,7 +160,10 @@ pub fn instant<S: Scalar>(
     // T + C·h'(T) is convex in |T|: Newton from the uncrept force falls to the root without
     // passing it, and its last pass carries the derivatives.
     let mut t = uncrept;
-    for _ in 0..60 {
+    for pass in 0..60 {
+        if pass >= PASSES_OF_A_STEP {
+            work::spend(work::STEP);
+        }
         let rise = if rate(t).re() > 0.0 {
             plastic.limit_slope(t) * plastic.rate
         } else {
