@@ -121,3 +121,15 @@ def test_a_plant_that_runs_away_from_every_start_is_said(monkeypatch: pytest.Mon
     monkeypatch.setattr(Rows, "residual", lambda *given: gone(whole(*given), np.nan), raising=True)
     with pytest.raises(InputError, match=r"runs away from every start .* in recording 1;"):
         fit(plant(), recorded())
+
+
+def test_a_plant_that_cannot_be_simulated_leaves_windows_as_they_are() -> None:
+    """A contact too stiff for the samples: no error ends what asked for it."""
+    windows = ShootingForm(plant(), recorded(), horizon=0.1)
+    stiff = bristles(1e12, damping=50.0)
+    assert np.all(np.isnan(windows.residual(stiff)))
+    windows.go_by(stiff)
+    assert np.all(windows.unit == TRUE["inertia"])
+    columns = windows.signatures(stiff, [("cogging", {}), ("stribeck", {"velocity": 0.1})])
+    assert columns.shape == (len(windows), 3)
+    assert np.all(columns == 0.0)

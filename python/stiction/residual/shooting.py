@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 import numpy as np
 
 from .._support.arrays import FloatArray
+from ..catalogue import effects
 from ..errors import InputError
 from ..recording.motion import GAUSSIAN
 from .accompanied import nearby_motion
@@ -118,9 +119,15 @@ class ShootingForm(WeakForm):
             self.unit = self.unit * self._weights(plant)
 
     def _weights(self, plant: Plant) -> FloatArray:
-        """Weight of every window, 1 of most, by what errors of its start come to; shape (n,)."""
+        """Weight of every window, 1 of most, by what errors of its start come to; shape (n,).
+
+        1 of all where no run of the plant is kept near the readings: nobody knows what they do there.
+        """
         left = self.residual(plant)
-        alone = self.from_readings_alone(plant, number=STARTED)
+        try:
+            alone = self.from_readings_alone(plant, number=STARTED)
+        except InputError:
+            return np.ones(len(self))
         sizes = np.sqrt(np.mean(np.square(alone), axis=0))
         if not (self.moves.any() and np.isfinite(sizes).all() and np.isfinite(left).all()):
             return np.ones(len(self))
@@ -250,15 +257,20 @@ class ShootingForm(WeakForm):
         Of first order in two places: what an effect adds is taken along the measured motion, as in
         the weak form, and how the simulated motion answers to an effort along its own, in 16 parts
         of a window. A machine at rest answers to nothing. That is enough to screen by; a refit is
-        exact.
+        exact. 0 where the plant cannot be simulated.
 
         Parameters and return value are those of ``WeakForm.signatures``.
         """
-        weights = self.kernel.second
+        weights, wanted = self.kernel.second, list(candidates)
         number = min(RESPONSE_PARTS, len(weights))
-        found = self.start_motor(plant, self.position).shoot_signatures(
-            self.motion, weights, self.stride, list(candidates), number, start=start, strict=False
-        )
+        motor = self.start_motor(plant, self.position)
+        try:
+            found = motor.shoot_signatures(
+                self.motion, weights, self.stride, wanted, number, start=start, strict=False
+            )
+        except InputError:
+            gains = {record.name: len(record.gains) for record in effects()}
+            found = np.zeros((sum(gains[name] for name, _ in wanted), len(self)))
         columns: FloatArray = (self.unit * found).T
         return columns if kept is None else columns[kept]
 
