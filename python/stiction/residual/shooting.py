@@ -121,7 +121,7 @@ class ShootingForm(WeakForm):
     def _weights(self, plant: Plant) -> FloatArray:
         """Weight of every window, 1 of most, by what errors of its start come to; shape (n,).
 
-        1 of all where no run of the plant is kept near the readings: nobody knows what they do there.
+        1 of all where no run of the plant is kept near the readings.
         """
         left = self.residual(plant)
         try:
