@@ -350,7 +350,7 @@ def fit_model(
     """
     paths = [p for p in free_paths(plant) if p.startswith(f"effects.{only}." if only else "")]
     begin, own = plant, None if nuisances is None else nuisances.of(evidence.training_recordings)
-    if own is not None and evidence.simulated and len(evidence.train) >= MANY:
+    if own is not None and len(evidence.train) >= MANY and evidence.forms[0].kinked:
         begin, own = _led_by_some(evidence, plant, paths, own, most=most, converged=converged)
     solution = minimise(
         begin,
