@@ -50,7 +50,6 @@ def least_squares(
     tolerance: float,
     nothing: float,
     straight: bool,
-    kinked: bool,
     damping: float,
     threads: int,
 ) -> tuple[_Floats, float, bool, bool]: ...

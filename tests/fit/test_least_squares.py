@@ -89,8 +89,7 @@ def test_threads_change_no_bit() -> None:
     def bits(threads: int) -> tuple[bytes, float]:
         x, cost, *_ = least_squares(
             bent.residual, bent.slopes, BEGIN, *FREE, np.ones(4), pulls=[], most=60,
-            tolerance=1e-12, nothing=0.0, straight=False, kinked=False, damping=0.1,
-            threads=threads,
+            tolerance=1e-12, nothing=0.0, straight=False, damping=0.1, threads=threads,
         )  # fmt: skip
         return x.tobytes(), cost
 

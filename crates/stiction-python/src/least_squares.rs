@@ -136,7 +136,7 @@ fn each<'py>(
 /// most : int
 ///     Evaluations of the residual at most.
 /// tolerance, nothing, damping : float
-/// straight, kinked : bool
+/// straight : bool
 /// threads : int
 ///     Over which sums over rows are divided; they change no bit.
 ///
@@ -151,7 +151,7 @@ fn each<'py>(
 ///     Arrays of other shapes.
 #[pyfunction]
 #[pyo3(signature = (
-    residual, slopes, begin, low, high, scale, *, pulls, most, tolerance, nothing, straight, kinked, damping,
+    residual, slopes, begin, low, high, scale, *, pulls, most, tolerance, nothing, straight, damping,
     threads
 ))]
 #[allow(clippy::too_many_arguments)] // by name from Python
@@ -168,7 +168,6 @@ pub fn least_squares<'py>(
     #[pyo3(from_py_with = real)] tolerance: f64,
     #[pyo3(from_py_with = real)] nothing: f64,
     straight: bool,
-    kinked: bool,
     #[pyo3(from_py_with = real)] damping: f64,
     threads: usize,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, f64, bool, bool)> {
@@ -192,7 +191,7 @@ pub fn least_squares<'py>(
         Bounds { low: slice(&low), high: slice(&high) },
         slice(&scale),
         &pulls,
-        Settings { most, tolerance, nothing, straight, kinked, damping, threads },
+        Settings { most, tolerance, nothing, straight, damping, threads },
     )?;
     let x = PyArray1::from_vec(py, found.x);
     Ok((x, found.cost, found.converged, found.fresh))

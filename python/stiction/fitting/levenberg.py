@@ -95,7 +95,6 @@ def descend(
     tolerance: float,
     nothing: float = 0.0,
     straight: bool = False,
-    kinked: bool = False,
     damping: float = FIRST_DAMPING,
 ) -> Minimum:
     """Minimise Σr² within bounds.
@@ -118,9 +117,6 @@ def descend(
     straight : bool
         Whether the residual depends on x nearly in a straight line: then it may end on corrected
         slopes, too.
-    kinked : bool
-        Whether attempts that fail correct the slopes: rows are simulated, and beside a kink a slope
-        holds for less than any step that counts.
     damping : float
         To start with, in units of the scaled normal matrix's diagonal.
     """
@@ -135,7 +131,6 @@ def descend(
         tolerance=tolerance,
         nothing=nothing,
         straight=straight,
-        kinked=kinked,
         damping=damping,
         threads=thread_count(),
     )

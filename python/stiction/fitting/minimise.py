@@ -451,7 +451,6 @@ class _Minimiser:
             tolerance=self.converged,
             nothing=self.rounding,
             straight=not self.variables.paths,
-            kinked=self.rows[0].form.kinked,
             damping=BOLD if self.rows[0].form.simulated else FIRST_DAMPING,
         )
 

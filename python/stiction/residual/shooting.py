@@ -94,7 +94,6 @@ class ShootingForm(WeakForm):
     """
 
     simulated: ClassVar[bool] = True
-    kinked: ClassVar[bool] = True
 
     def __init__(
         self, plant: Plant, recording: Recording, *, horizon: float, overlap: float = MOST_OVERLAP

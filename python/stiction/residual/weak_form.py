@@ -108,8 +108,6 @@ class WeakForm:
 
     simulated: ClassVar[bool] = False
     """Whether the plant moves by itself, and is not led along the measured motion."""
-    kinked: ClassVar[bool] = False
-    """Whether rows are short simulations, in which a contact breaks away or does not."""
     counted: float | None = None
     """Inertia by which accelerations are counted where friction grows with the effort itself (see
     ``Rows.scale``); None until a fit has one."""

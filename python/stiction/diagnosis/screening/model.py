@@ -50,9 +50,6 @@ REFIT_EVALUATIONS: Final = 30
 """A refit starts from the base and an estimate of the gain: it needs few steps."""
 REFIT_CONVERGED: Final = 1e-5
 """Of the power: a fifth of a standard error of any parameter."""
-MANY, PART = 10, 5
-"""Recordings from which on a fit over windows goes through a part of them first, and how many these
-are: from where they lead a fit to all is short."""
 FARTHEST: Final = 7.0
 """Step of the logarithm of a parameter at most: of one that hardly tells, a step may be any."""
 REPLAYS: Final = 8
@@ -349,15 +346,13 @@ def fit_model(
     ``only`` names an effect whose parameters alone are varied, beside the nuisances.
     """
     paths = [p for p in free_paths(plant) if p.startswith(f"effects.{only}." if only else "")]
-    begin, own = plant, None if nuisances is None else nuisances.of(evidence.training_recordings)
-    if own is not None and len(evidence.train) >= MANY and evidence.forms[0].kinked:
-        begin, own = _led_by_some(evidence, plant, paths, own, most=most, converged=converged)
+
     solution = minimise(
-        begin,
+        plant,
         paths,
         evidence.train,
         most=most,
-        nuisances=own,
+        nuisances=None if nuisances is None else nuisances.of(evidence.training_recordings),
         converged=converged,
         # What is fitted here starts from a model that was fitted.
         beyond_kinks=False,
@@ -365,33 +360,6 @@ def fit_model(
     if not only:
         solution = refit_windows(solution, evidence.train, most=most, converged=converged)
     return Model(evidence, solution, nuisances or Nuisances())
-
-
-def _led_by_some(
-    evidence: Evidence,
-    plant: Plant,
-    paths: Sequence[str],
-    nuisances: Nuisances,
-    *,
-    most: int,
-    converged: float,
-) -> Known:
-    """Plant and nuisances, fitted to some of the recordings of train, evenly over the session."""
-    rows = evidence.train
-    some = rows[:: math.ceil(len(rows) / PART)]
-    found = minimise(
-        plant,
-        paths,
-        some,
-        most=most,
-        nuisances=nuisances.of({each.index for each in some}),
-        converged=converged * len(rows) / len(some),
-        beyond_kinks=False,
-    )
-    if found.interrupted:
-        raise KeyboardInterrupt
-    starts = {**nuisances.starts, **found.nuisances.starts}
-    return Known(found.plant, replace(nuisances, timing=found.nuisances.timing, starts=starts))
 
 
 def likeliest_of(evidence: Evidence, plants: Sequence[Plant], nuisances: Nuisances) -> Plant:

@@ -3,9 +3,8 @@
 //! The normal matrix is formed at once (n·p² operations against the decomposition of all rows, which costs
 //! ten times that) with columns scaled by their norms; what stands at a bound and is pushed against it is
 //! held, the step of the others is cut at theirs. Slopes are corrected by what each step shows of them and
-//! used again (Broyden, Math. Comp. 19 (1965)) as long as steps keep what they promise, and where
-//! rows have kinks by what attempts show that failed: a slope beside one holds for less than any step that
-//! counts. The corrections stand beside the slopes, which are never written. Damping after Nielsen, Damping parameter in
+//! used again (Broyden, Math. Comp. 19 (1965)) as long as steps keep what they promise; the corrections
+//! stand beside the slopes, which are never written. Damping after Nielsen, Damping parameter in
 //! Marquardt's method, IMM-REP-1999-05.
 
 use nalgebra::{DMatrix, DVector};
@@ -22,9 +21,6 @@ const DEAD: f64 = 1e-12;
 const KEPT: (f64, f64) = (0.25, 2.0);
 /// Steps that one set of slopes is used for.
 const MOST_USES: usize = 8;
-/// Attempts that failed by which the slopes at a point are corrected: each shows what rows do as far as it
-/// went, and beyond a kink that is not what they do at the point. Twice as many tell no more.
-const MOST_MISSED: usize = 6;
 
 /// What is left of the rows of each part, where it lies.
 pub trait Parts {
@@ -99,9 +95,6 @@ pub struct Settings {
     /// Whether the residual depends on the variables nearly in a straight line: then it may end on
     /// corrected slopes, too.
     pub straight: bool,
-    /// Whether rows have kinks, as windows of a simulation have in which a contact breaks away or does not:
-    /// then attempts that fail correct the slopes, too.
-    pub kinked: bool,
     /// To start with, in units of the scaled normal matrix's diagonal.
     pub damping: f64,
     /// Over which sums over rows are divided.
@@ -132,7 +125,7 @@ pub fn minimise<P: Problem>(
     pulls: &[Pull],
     settings: Settings,
 ) -> Result<Minimum, P::Error> {
-    let Settings { most, tolerance, nothing, straight, kinked, mut damping, threads } = settings;
+    let Settings { most, tolerance, nothing, straight, mut damping, threads } = settings;
     let scale = DVector::from_column_slice(scale);
     let mut x = bounds.inside(&DVector::from_column_slice(begin));
     let mut left = problem.residual(x.as_slice())?;
@@ -148,9 +141,7 @@ pub fn minimise<P: Problem>(
             return ended(&x, cost, false, false);
         }
         let mut linear = Linear::of(problem, &x, pulls, threads)?;
-        // Steps that these slopes were used for, and attempts from here that they were corrected by.
-        let (mut uses, mut missed) = (1, 0);
-        loop {
+        for uses in 1..=MOST_USES {
             let gradient = linear.gradient(problem, &left, &x)?;
             // Scales only grow (Moré 1978): a slope that fades must not make a step run away.
             for (largest, curve) in largest.iter_mut().zip(linear.normal.diagonal().iter()) {
@@ -187,10 +178,6 @@ pub fn minimise<P: Problem>(
                     if uses > 1 {
                         continue 'slopes;
                     }
-                    if corrected(missed) {
-                        missed = linear.uncorrect();
-                        break;
-                    }
                     return ended(&x, cost, true, true);
                 }
                 if uses > 1 && promised <= tolerance * cost {
@@ -207,17 +194,15 @@ pub fn minimise<P: Problem>(
                     damping *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gained.min(1.0) - 1.0).powi(3));
                     (damping, growth) = (damping.max(DAMPING.0), 2.0);
                     let flat = cost - power <= tolerance * cost;
-                    let fresh = uses == 1 && !corrected(missed);
                     let before = std::mem::replace(&mut left, after);
                     (x, cost) = (tried, power);
-                    if flat && (fresh || straight) {
-                        return ended(&x, cost, true, fresh);
+                    if flat && (uses == 1 || straight) {
+                        return ended(&x, cost, true, uses == 1);
                     }
                     if flat || !(KEPT.0 < gained && gained < KEPT.1) || uses == MOST_USES {
                         continue 'slopes;
                     }
                     linear.correct(problem, &before, &left, &moved, &size)?;
-                    (uses, missed) = (uses + 1, 0);
                     break;
                 }
                 if uses > 1 {
@@ -225,35 +210,16 @@ pub fn minimise<P: Problem>(
                     continue 'slopes;
                 }
                 // What a step cut at a bound promises says nothing of how much there is to gain.
-                let nothing_more =
-                    self::promised(&gradient, &linear.normal, &step) <= tolerance * cost;
-                if nothing_more && !corrected(missed) {
+                if self::promised(&gradient, &linear.normal, &step) <= tolerance * cost {
                     return ended(&x, cost, true, true);
                 }
                 (damping, growth) = (damping * growth, 2.0 * growth);
                 if damping > DAMPING.1 {
                     return ended(&x, cost, true, true);
                 }
-                if !kinked {
-                    continue;
-                }
-                if nothing_more || missed == MOST_MISSED {
-                    missed = linear.uncorrect();
-                } else if missed < MOST_MISSED {
-                    linear.correct(problem, &left, &after, &moved, &size)?;
-                    missed += 1;
-                } else {
-                    continue;
-                }
-                break;
             }
         }
     }
-}
-
-/// Whether slopes are those that so many attempts that failed have corrected.
-fn corrected(missed: usize) -> bool {
-    (1..=MOST_MISSED).contains(&missed)
 }
 
 /// The residual about a point, as far as its slopes tell it: J·C + Σ missed·alongᵀ.
@@ -261,8 +227,6 @@ struct Linear<'a, S> {
     slopes: S,
     corrections: Vec<Correction>,
     normal: DMatrix<f64>,
-    /// Without the corrections.
-    uncorrected: DMatrix<f64>,
     pulls: &'a [Pull],
     threads: usize,
 }
@@ -300,16 +264,7 @@ impl<'a, S: Slopes> Linear<'a, S> {
         for pull in pulls {
             normal[(pull.place, pull.place)] += pull.weight * pull.weight;
         }
-        let uncorrected = normal.clone();
-        Ok(Self { slopes, corrections: Vec::new(), normal, uncorrected, pulls, threads })
-    }
-
-    /// Takes all corrections back: at the point itself slopes cannot be wrong. From here on attempts from it
-    /// correct nothing.
-    fn uncorrect(&mut self) -> usize {
-        self.corrections.clear();
-        self.normal.copy_from(&self.uncorrected);
-        MOST_MISSED + 1
+        Ok(Self { slopes, corrections: Vec::new(), normal, pulls, threads })
     }
 
     /// Half the gradient of Σr².
@@ -471,7 +426,6 @@ mod tests {
         tolerance: 1e-12,
         nothing: 0.0,
         straight: false,
-        kinked: false,
         damping: 0.1,
         threads: 1,
     };
@@ -515,30 +469,6 @@ mod tests {
         let outside = Bounds { low: &[2.0, 0.0], high: &[3.0, 3.0] };
         let (moved, _) = found(rosenbrock, its_slopes, &[-1.2, 1.0], outside, &[]);
         assert!(moved.x == [2.0, 3.0], "{moved:?}");
-    }
-
-    #[test]
-    fn corrected_slopes_foresee_the_attempt_that_failed_and_are_taken_back_whole() {
-        // A row that saturates beside one that does not.
-        let rows = |x: &[f64]| vec![vec![x[0] - 1.0, (100.0 * (x[0] - x[1])).tanh()]];
-        let slopes = |x: &[f64]| {
-            let steep = 100.0 / (100.0 * (x[0] - x[1])).cosh().powi(2);
-            Columns(vec![(vec![0, 1], vec![1.0, steep, 0.0, -steep])], None)
-        };
-        let mut problem = Function { residual: rows, slopes, asked: 0 };
-        let (x, moved) = (DVector::zeros(2), DVector::from_row_slice(&[0.2, -0.1]));
-        let Ok(mut linear) = Linear::of(&mut problem, &x, &[], 1);
-        let plain = linear.normal.clone();
-        let (before, after) = (Rows(rows(&[0.0, 0.0])), Rows(rows(&[0.2, -0.1])));
-        let size = DVector::from_row_slice(&[100.0, 100.0]);
-        let Ok(()) = linear.correct(&problem, &before, &after, &moved, &size);
-        let changed: Vec<f64> = after.0[0].iter().zip(&before.0[0]).map(|(a, b)| a - b).collect();
-        let power: f64 = changed.iter().map(|change| change * change).sum();
-        assert!((moved.dot(&(&linear.normal * &moved)) - power).abs() < 1e-9 * power);
-        let Ok(gradient) = linear.gradient(&problem, &before, &x);
-        let along: f64 = changed.iter().zip(&before.0[0]).map(|(change, left)| change * left).sum();
-        assert!((gradient.dot(&moved) - along).abs() < 1e-9);
-        assert!(!corrected(linear.uncorrect()) && linear.normal == plain);
     }
 
     #[test]
