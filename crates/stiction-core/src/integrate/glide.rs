@@ -53,15 +53,15 @@ impl Verlet<f64> {
 
 /// Who sees the body and the contact after each sample. A trait, for a closure cannot ask to be part
 /// of the loop.
-pub trait Seen<S: Scalar, T> {
+pub trait Seen<S: Scalar, T, E> {
     /// Whether the contact is looked at.
     fn looks(&self) -> bool;
     /// Sees samples during which nothing changes but friction and time, where it can see them at once;
     /// it has seen none of them where it cannot.
     fn still(&mut self, samples: Range<usize>, run: &Run<S>, friction: impl Fn(usize) -> S)
     -> bool;
-    /// Sees a sample; the contact is as it was before the first where it is not looked at.
-    fn see(&mut self, sample: usize, run: &Run<S>, contact: &T);
+    /// Sees a sample, and what acts in it; the contact is as it was before the first where it is not looked at.
+    fn see(&mut self, sample: usize, run: &Run<S>, contact: &T, efforts: &E);
     /// Sees how far the body goes in a step and the force of its spring then, before the velocity
     /// is known: of a law that has one ([`FrictionLaw::springs`]).
     #[inline(always)]
@@ -80,7 +80,7 @@ pub struct Places<'a, S> {
     pub velocity: &'a mut [S],
 }
 
-impl<S: Scalar, T> Seen<S, T> for Places<'_, S> {
+impl<S: Scalar, T, E> Seen<S, T, E> for Places<'_, S> {
     #[inline(always)]
     fn looks(&self) -> bool {
         false
@@ -95,16 +95,18 @@ impl<S: Scalar, T> Seen<S, T> for Places<'_, S> {
     }
 
     #[inline(always)]
-    fn see(&mut self, sample: usize, run: &Run<S>, _: &T) {
+    fn see(&mut self, sample: usize, run: &Run<S>, _: &T, _: &E) {
         let place = sample - self.first;
         self.position[place] = run.position;
         self.velocity[place] = run.velocity;
     }
 }
 
-/// What effects make of a moment: effort beside input and load, and levels of the contact.
+/// What acts at a moment on a body and its contact.
 #[derive(Debug, Clone, Copy)]
 pub struct Acting<S> {
+    /// Effort of the drive, and the load.
+    pub driving: S,
     /// Gravity and added efforts.
     pub ambient: S,
     /// Multipliers of friction and of viscous friction.
@@ -112,9 +114,10 @@ pub struct Acting<S> {
 }
 
 impl<S: Scalar> Acting<S> {
-    /// Levels of 1 beside this effort.
+    /// This effort alone, and levels of 1.
     pub fn plain(ambient: S) -> Self {
-        Self { ambient, levels: (S::constant(1.0), S::constant(1.0)) }
+        let one = S::constant(1.0);
+        Self { driving: S::constant(0.0), ambient, levels: (one, one) }
     }
 }
 
@@ -123,11 +126,16 @@ pub trait Efforts<S: Scalar> {
     /// Whether they are the same all through a sample and levels are 1: else what acts where the body is
     /// comes to them.
     const HELD: bool = true;
-    /// During this sample.
+    /// During this sample, where they are the same all through it.
     fn at(&self, sample: usize) -> S;
-    /// What acts beside them in a sample where a run will be after such a displacement, at such a velocity.
+    /// Of the drive and the load in a sample where a run is, to which its own ambient comes.
     #[inline(always)]
-    fn beside(
+    fn driving(&self, sample: usize, _run: &Run<S>) -> S {
+        self.at(sample)
+    }
+    /// What acts in a sample where a run will be after such a displacement, at such a velocity.
+    #[inline(always)]
+    fn acting(
         &self,
         _sample: usize,
         run: &Run<S>,
@@ -143,10 +151,13 @@ pub trait Efforts<S: Scalar> {
     fn levels(&self, _sample: usize, _run: &Run<S>, _arrived: Option<&Acting<S>>) -> (S, S) {
         (S::constant(1.0), S::constant(1.0))
     }
-    /// Takes note of what a step did to a run, which began at this position and velocity, under these
-    /// efforts at its start and its end; the run may come out slower.
+    /// Takes note of what a step of a sample did to a run, which began at this position and velocity, under
+    /// these efforts at its start and its end; the run may come out slower.
     #[inline(always)]
-    fn settle(&self, _run: &mut Run<S>, _from: (S, S), _efforts: (S, S)) {}
+    fn settle(&self, _sample: usize, _run: &mut Run<S>, _from: (S, S), _efforts: (S, S)) {}
+    /// Takes note of a sample that has ended with a run, and begins the next.
+    #[inline(always)]
+    fn ended(&mut self, _sample: usize, _run: &mut Run<S>) {}
     /// Whether a sample that begins under these levels and this effort needs no finer steps.
     #[inline(always)]
     fn is_fine(&self, _speed: f64, _effort: f64, _levels: (S, S)) -> bool {
@@ -197,15 +208,43 @@ pub struct Glide<S, E, V> {
     /// All effort but friction then, and at its end, and what acts there, likewise.
     pub efforts_of_step: (S, S),
     /// What acts at the end of it.
-    pub beside: Acting<S>,
+    pub there: Acting<S>,
 }
 
 impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
+    /// From where a run is; `efforts` says what acts in a sample, which is divided into so many steps.
+    #[inline(always)]
+    pub fn new(
+        run: Run<S>,
+        efforts: E,
+        seen: V,
+        samples: Range<usize>,
+        (verlet, parts): (Verlet<S>, u32),
+    ) -> Self {
+        let levels = efforts.levels(samples.start, &run, None);
+        let (efforts_of_step, there) = ((run.ambient, run.ambient), Acting::plain(run.ambient));
+        Self { verlet, run, efforts, seen, samples, part: 0, parts, levels, efforts_of_step, there }
+    }
+
+    /// The last step of a sample has been made.
+    #[inline(always)]
+    fn end_sample<T>(&mut self, contact: &T)
+    where
+        V: Seen<S, T, E>,
+    {
+        let sample = self.samples.start;
+        self.efforts.ended(sample, &mut self.run);
+        self.seen.see(sample, &self.run, contact, &self.efforts);
+        self.samples.start += 1;
+    }
+
     /// All effort but friction where the body is, in a sample.
     #[inline(always)]
     fn here(&self, sample: usize) -> S {
-        let effort = self.efforts.at(sample);
-        if E::HELD { effort } else { effort + self.run.ambient }
+        if E::HELD {
+            return self.efforts.at(sample);
+        }
+        self.efforts.driving(sample, &self.run) + self.run.ambient
     }
 
     #[inline(always)]
@@ -220,7 +259,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
     #[inline(never)]
     fn hold_each<T>(&mut self, greatest: S, contact: &T) -> Option<S>
     where
-        V: Seen<S, T>,
+        V: Seen<S, T, E>,
     {
         let mut held = None;
         while let Some(effort) = self.next() {
@@ -234,8 +273,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
             self.part += 1;
             if self.part == self.parts {
                 self.part = 0;
-                self.seen.see(self.samples.start, &self.run, contact);
-                self.samples.start += 1;
+                self.end_sample(contact);
             }
             self.go_on(None);
         }
@@ -257,7 +295,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
     }
 }
 
-impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E, V> {
+impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T, E>> PlainSteps<S, T> for Glide<S, E, V> {
     const HELD: bool = E::HELD;
 
     #[inline(always)]
@@ -277,7 +315,7 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E
 
     #[inline(always)]
     fn levels_there(&self) -> &(S, S) {
-        &self.beside.levels
+        &self.there.levels
     }
 
     #[inline(always)]
@@ -304,7 +342,7 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E
 
     #[inline(always)]
     fn channels_there(&self) -> Channels<S> {
-        Self::at_levels(self.beside.levels)
+        Self::at_levels(self.there.levels)
     }
 
     #[inline(always)]
@@ -313,8 +351,8 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E
             return effort;
         }
         let (sample, span) = (self.samples.start, self.verlet.span);
-        self.beside = self.efforts.beside(sample, &self.run, displacement, shown(), span);
-        let then = self.efforts.at(sample) + self.beside.ambient;
+        self.there = self.efforts.acting(sample, &self.run, displacement, shown(), span);
+        let then = self.there.driving + self.there.ambient;
         self.efforts_of_step = (effort, then);
         then
     }
@@ -343,8 +381,10 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E
         let samples = start..start + held;
         let steps = |samples: usize, part: u32| samples * self.parts as usize - part as usize;
         let (mut time, part) = (self.run.time, self.part);
-        let (efforts, ambient) = (&self.efforts, self.run.ambient);
-        let here = |k| if E::HELD { efforts.at(k) } else { efforts.at(k) + ambient };
+        let (efforts, resting) = (&self.efforts, self.run);
+        let here = |k| {
+            if E::HELD { efforts.at(k) } else { efforts.driving(k, &resting) + resting.ambient }
+        };
         if self.seen.still(samples.clone(), &self.run, here) {
             // Of what a bare body does nothing asks for derivatives of time.
             let passed = after_steps(time.re(), self.verlet.span.re(), steps(held, part));
@@ -356,7 +396,7 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E
                 }
                 self.run.time = time;
                 self.run.friction = here(k);
-                self.seen.see(k, &self.run, contact);
+                self.seen.see(k, &self.run, contact, &self.efforts);
             }
         }
         self.run.time = time;
@@ -383,17 +423,16 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T>> PlainSteps<S, T> for Glide<S, E
             run.path += displacement.abs();
             run.time += self.verlet.span;
             run.moved += displacement;
-            run.ambient = self.beside.ambient;
-            self.efforts.settle(run, from, self.efforts_of_step);
+            run.ambient = self.there.ambient;
+            self.efforts.settle(self.samples.start, run, from, self.efforts_of_step);
         }
         self.part += 1;
         if self.part == self.parts {
             self.part = 0;
-            self.seen.see(self.samples.start, run, contact);
-            self.samples.start += 1;
+            self.end_sample(contact);
         }
         if !E::HELD {
-            self.go_on(Some(self.beside));
+            self.go_on(Some(self.there));
         }
         if E::HELD { velocity } else { self.run.velocity }
     }
@@ -416,7 +455,7 @@ where
     S: Scalar,
     L: FrictionLaw<S>,
     E: Efforts<S>,
-    V: Seen<S, L::State>,
+    V: Seen<S, L::State, E>,
 {
     /// The body where it ended, the sample and the step of it.
     type Output = (Run<S>, usize, u32);
@@ -437,7 +476,7 @@ where
     S: Scalar,
     L: FrictionLaw<S>,
     E: Efforts<S>,
-    V: Seen<S, L::State>,
+    V: Seen<S, L::State, E>,
 {
     type Output = ();
 

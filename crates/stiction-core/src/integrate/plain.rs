@@ -1,12 +1,11 @@
 //! What a machine is in plain steps, and how it holds a body at rest.
 
-use std::ops::Range;
-
-use super::glide::{Acting, Efforts, Glide, Stillness};
+use super::glide::{Acting, Stillness};
 use super::levels_are_fine;
 use crate::friction::FrictionLaw;
 use crate::math::scalar::Scalar;
 use crate::math::verlet::Verlet;
+use crate::plant::effects::Situation;
 use crate::plant::{Machine, Run};
 
 impl<S: Scalar> Machine<S> {
@@ -21,29 +20,26 @@ impl<S: Scalar> Machine<S> {
         Verlet::new(span, self.inertia, self.lightness)
     }
 
-    /// What else acts on this unchanged machine and its contact after a step that displaces the body so far,
-    /// beside the [effort of the drive and a load](Self::driven_directly), and that load.
+    /// What acts on this machine and its contact where a step leads that is in a row; `driving` says the effort
+    /// of the drive and a load there, `load` that load.
     #[inline(always)]
-    pub fn beside(
+    pub fn acting(
         &self,
-        run: &Run<S>,
-        acting: impl FnOnce() -> (S, S),
-        displacement: S,
-        velocity: S,
-        span: S,
+        at: &Situation<S>,
+        driving: impl FnOnce(&Situation<S>) -> S,
+        load: impl FnOnce() -> S,
     ) -> Acting<S> {
-        let at = run.situation().after(displacement, velocity, span);
-        let ambient = self.surroundings(&at);
+        let ambient = self.surroundings(at);
+        let driving = driving(at);
         if !self.effects.changes_levels() {
-            return Acting::plain(ambient);
+            return Acting { driving, ..Acting::plain(ambient) };
         }
-        let (effort, load) = acting();
-        let at = self.at_contact(&at, effort + ambient, load);
-        Acting { ambient, levels: self.effects.levels(&at) }
+        let at = self.at_contact(at, driving + ambient, load());
+        Acting { driving, ambient, levels: self.effects.levels(&at) }
     }
 
-    /// Levels of the contact of this unchanged machine where a run is, under the effort of the drive and a load,
-    /// and that load; `arrived` is what was said of the place before the velocity was known.
+    /// Levels of its contact where a run is, under the effort of the drive and a load, and that load; `arrived`
+    /// is what was said of the place before the velocity was known.
     #[inline(always)]
     pub fn levels_of(
         &self,
@@ -53,7 +49,7 @@ impl<S: Scalar> Machine<S> {
     ) -> (S, S) {
         match arrived {
             _ if !self.effects.changes_levels() => Acting::plain(run.ambient).levels,
-            Some(arrived) if !self.effects.asks_speed() => arrived.levels,
+            Some(arrived) if !self.effects.asks_speed() && !self.effects.remembers() => arrived.levels,
             _ => {
                 let (effort, load) = acting();
                 let at = self.at_contact(&run.situation(), effort + run.ambient, load);
@@ -78,7 +74,7 @@ impl<S: Scalar> Machine<S> {
         damping * (span / self.inertia.re()) <= 0.999
     }
 
-    /// What changes around a contact of this unchanged machine at rest, under efforts up to that.
+    /// What changes around a contact of this machine at rest, under efforts up to that.
     pub fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S), span: S) -> Stillness {
         let mut settled = *run;
         self.refresh(&mut settled);
@@ -91,33 +87,6 @@ impl<S: Scalar> Machine<S> {
             Stillness::Changing
         } else {
             Stillness::Whole
-        }
-    }
-
-    /// A row of plain steps of this bare or unchanged machine from where a run is; `efforts` says all effort but
-    /// friction in a sample, `parts` in how many steps of `span` it is divided.
-    pub fn glide<E: Efforts<S>, V>(
-        &self,
-        run: Run<S>,
-        efforts: E,
-        seen: V,
-        samples: Range<usize>,
-        (span, parts): (S, u32),
-    ) -> Glide<S, E, V> {
-        let verlet = self.verlet(span);
-        let levels = efforts.levels(samples.start, &run, None);
-        let (efforts_of_step, beside) = ((run.ambient, run.ambient), Acting::plain(run.ambient));
-        Glide {
-            verlet,
-            run,
-            efforts,
-            seen,
-            samples,
-            part: 0,
-            parts,
-            levels,
-            efforts_of_step,
-            beside,
         }
     }
 }

@@ -215,7 +215,7 @@ fn go<L: FrictionLaw<f64>>(
         parts: 1,
         levels: (1.0, 1.0),
         efforts_of_step: (0.0, 0.0),
-        beside: Acting::plain(0.0),
+        there: Acting::plain(0.0),
     };
     law.clone().glide(state, &mut glide);
     let (mut run, steps, seen) = (glide.run, glide.samples.start, glide.seen);
@@ -295,7 +295,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-impl<T> Seen<f64, T> for Watch<'_> {
+impl<T, E> Seen<f64, T, E> for Watch<'_> {
     #[inline(always)]
     fn looks(&self) -> bool {
         false
@@ -307,7 +307,7 @@ impl<T> Seen<f64, T> for Watch<'_> {
     }
 
     #[inline(always)]
-    fn see(&mut self, _: usize, _: &Run<f64>, _: &T) {}
+    fn see(&mut self, _: usize, _: &Run<f64>, _: &T, _: &E) {}
 
     #[inline(always)]
     fn pulled(&mut self, way: f64, force: f64) {

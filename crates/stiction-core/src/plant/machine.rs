@@ -4,7 +4,7 @@ use super::body::Body;
 use super::budget::Budget;
 use super::drive::Drive;
 use super::effects::{Effects, Passage, Relaxation, Situation};
-use super::run::Run;
+use super::run::{Before, Run};
 use super::sensor::Sensor;
 use super::shaft::Shaft;
 use crate::friction::Channels;
@@ -103,11 +103,20 @@ impl<S: Scalar> Machine<S> {
         alone && self.effects.even_effort().is_some() && self.drive.servo.is_none()
     }
 
-    /// Whether all that is there beside drive, inertia and friction acts on the body and the contact by where
-    /// it is now, and nothing on the input.
-    pub fn is_unchanged(&self) -> bool {
-        let alone = self.shaft.is_none() && !self.relaxes() && self.drive.servo.is_none();
-        alone && self.effects.only_push()
+    /// Whether its steps may go in rows: nothing swings beside the body, and nothing gives way in series with
+    /// the contact.
+    pub fn has_rows(&self) -> bool {
+        self.shaft.is_none() && !self.relaxes() && !self.effects.is_seeded()
+    }
+
+    /// Whether such a row ends with its sample: something takes note of it.
+    pub fn notes_samples(&self) -> bool {
+        self.effects.remembers() || self.drive.servo.is_some()
+    }
+
+    /// Whether the effort of the drive goes by where the body is and how fast.
+    pub fn drives_by_place(&self) -> bool {
+        self.drive.servo.is_some() || self.effects.maps_by_place()
     }
 
     /// A body at this position and velocity.
@@ -241,10 +250,19 @@ impl<S: Scalar> Machine<S> {
         self.sensor.read(self.effects.sensor(S::constant(position)).re())
     }
 
-    /// Effort of the drive of this unchanged machine under an input, and a load.
+    /// Effort of the drive under an input, and a load, where that goes by neither place nor speed.
     #[inline(always)]
     pub fn driven_directly(&self, input: f64, load: S) -> S {
+        if self.effects.maps_inputs() {
+            return self.driven_anywhere(S::constant(input), load);
+        }
         self.drive.direct(input) + load
+    }
+
+    /// The same under an input that may depend on parameters.
+    #[inline(never)]
+    pub fn driven_anywhere(&self, input: S, load: S) -> S {
+        self.driven(input, &Situation::resting()) + load
     }
 
     /// All effort but friction on this bare machine under an input and a load.
@@ -401,9 +419,15 @@ impl<S: Scalar> Machine<S> {
         self.relaxation.is_some() || self.steady_creep.is_some()
     }
 
+    /// The same as a call: what all effects need is not compiled into every loop.
+    #[inline(never)]
+    pub(crate) fn driven_there(&self, input: S, at: &Situation<S>) -> S {
+        self.driven(input, at)
+    }
+
     /// Lets effects remember the sample that a run went through, from where it stood before.
     #[inline]
-    pub fn remember(&mut self, before: &Run<S>, run: &mut Run<S>) {
+    pub fn remember(&mut self, before: Before<S>, run: &mut Run<S>) {
         if self.effects.remembers() {
             let passage = Passage {
                 displacement: run.position - before.position,

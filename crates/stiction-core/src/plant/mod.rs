@@ -19,5 +19,5 @@ pub use budget::Budget;
 pub(crate) use budget::Work;
 pub use contact_effects::{ContactEffects, Reach};
 pub use machine::{Machine, SteadyCreep};
-pub use run::Run;
+pub use run::{Before, Run};
 pub use shaft::{Beyond, Shaft};

@@ -4,6 +4,25 @@ use super::budget::Budget;
 use super::effects::Situation;
 use crate::math::scalar::Scalar;
 
+/// What effects ask of where a run was before a sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Before<S> {
+    /// Position.
+    pub position: S,
+    /// Friction.
+    pub friction: S,
+    /// Time on the session clock.
+    pub time: S,
+}
+
+impl<S: Scalar> Before<S> {
+    /// Of where a run is.
+    #[inline]
+    pub fn of(run: &Run<S>) -> Self {
+        Self { position: run.position, friction: run.friction, time: run.time }
+    }
+}
+
 /// Position, velocity and what else of the body runs from step to step.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<S> {

@@ -12,6 +12,8 @@ use crate::support::interrupt;
 
 /// A step of a bare body in a row of them, some tens of nanoseconds.
 pub const IN_A_ROW: u64 = 1;
+/// What beginning such a row comes to, where it is of a sample alone.
+pub const A_ROW: u64 = 4;
 /// Any other step of the fast integrator, or one attempt to find where in it a mode changes.
 pub const STEP: u64 = 8;
 /// A step with its derivatives, in steps without.

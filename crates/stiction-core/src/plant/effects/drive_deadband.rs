@@ -24,6 +24,7 @@ pub struct DriveDeadband<S>(DriveDeadbandParameters<S>);
 impl<S: Scalar> Effect<S> for DriveDeadband<S> {
     const PARAMETERS: &'static [ParameterSpec] = DriveDeadbandParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::InputMap];
+    const MAPS_BY_PLACE: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "the drive gives nothing for small inputs, and less by as much for large ones",
         means: "small corrections never reach the machine: it hunts or stops short",

@@ -26,6 +26,7 @@ pub struct DriveSaturation<S>(DriveSaturationParameters<S>);
 impl<S: Scalar> Effect<S> for DriveSaturation<S> {
     const PARAMETERS: &'static [ParameterSpec] = DriveSaturationParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::InputMap];
+    const MAPS_BY_PLACE: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "the drive holds large inputs back",
         means: "what the controller asks for beyond the limit never arrives: fast moves overshoot \

@@ -36,6 +36,8 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     const ASKS_SPEED: bool = true;
     /// Whether its level changes while nothing moves: with time or efforts.
     const CHANGES_IN_TIME: bool = true;
+    /// Whether what the input becomes goes by where the body is and how fast.
+    const MAPS_BY_PLACE: bool = true;
 
     /// The effect with these values.
     fn build(values: &[S]) -> Self;
@@ -175,6 +177,12 @@ macro_rules! effects {
             fn changes_in_time(&self) -> bool {
                 match self {
                     $(Self::$effect(_) => <$module::$effect<S> as Effect<S>>::CHANGES_IN_TIME,)*
+                }
+            }
+
+            fn maps_by_place(&self) -> bool {
+                match self {
+                    $(Self::$effect(_) => <$module::$effect<S> as Effect<S>>::MAPS_BY_PLACE,)*
                 }
             }
 

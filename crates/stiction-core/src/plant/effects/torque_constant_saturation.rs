@@ -26,6 +26,7 @@ pub struct TorqueConstantSaturation<S>(TorqueConstantSaturationParameters<S>);
 impl<S: Scalar> Effect<S> for TorqueConstantSaturation<S> {
     const PARAMETERS: &'static [ParameterSpec] = TorqueConstantSaturationParameters::<f64>::SPECS;
     const HOOKS: &'static [Hook] = &[Hook::InputMap];
+    const MAPS_BY_PLACE: bool = false;
     const FACTS: EffectFacts = EffectFacts {
         summary: "the drive gives less effort per input where the input is large",
         means: "large efforts fall short: acceleration is less than the controller thinks it asked \

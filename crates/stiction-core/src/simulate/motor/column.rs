@@ -94,6 +94,11 @@ pub(crate) trait Rows<S: Scalar> {
     );
 }
 
+/// Who knows the machine that a row of plain steps is of.
+pub(super) trait OfMachine<S: Scalar> {
+    fn machine(&self) -> &Machine<S>;
+}
+
 /// A function that is told.
 pub(super) struct Told<F>(pub(super) F);
 
@@ -239,15 +244,18 @@ fn read(machine: &Machine<f64>, position: f64) -> f64 {
 }
 
 /// Shows the samples of a glide.
-pub(super) struct Showing<'a, S: Scalar, R> {
-    pub(super) machine: &'a Machine<S>,
-    pub(super) rows: &'a mut R,
-}
+pub(super) struct Showing<'a, R>(pub(super) &'a mut R);
 
-impl<S: Scalar, T: LawState<S>, R: Rows<S>> Seen<S, T> for Showing<'_, S, R> {
+impl<S, T, E, R> Seen<S, T, E> for Showing<'_, R>
+where
+    S: Scalar,
+    T: LawState<S>,
+    E: OfMachine<S>,
+    R: Rows<S>,
+{
     #[inline(always)]
     fn looks(&self) -> bool {
-        self.rows.looks()
+        self.0.looks()
     }
 
     #[inline(always)]
@@ -257,11 +265,11 @@ impl<S: Scalar, T: LawState<S>, R: Rows<S>> Seen<S, T> for Showing<'_, S, R> {
         run: &Run<S>,
         friction: impl Fn(usize) -> S,
     ) -> bool {
-        self.rows.still(samples, run, friction)
+        self.0.still(samples, run, friction)
     }
 
     #[inline(always)]
-    fn see(&mut self, sample: usize, run: &Run<S>, contact: &T) {
-        self.rows.see(sample, run, self.machine, |column| contact.output(column));
+    fn see(&mut self, sample: usize, run: &Run<S>, contact: &T, efforts: &E) {
+        self.0.see(sample, run, efforts.machine(), |column| contact.output(column));
     }
 }

@@ -1,5 +1,6 @@
 //! A motor: machine, friction and the way they run together.
 
+mod applied;
 mod column;
 mod contact;
 mod cost;

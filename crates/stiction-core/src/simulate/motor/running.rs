@@ -1,15 +1,15 @@
 //! A motor over some number type, on its way.
 
 use super::MotorSpec;
+use super::applied::{AHEAD, Ahead, Applied, Notes};
 use super::column::{Rows, Showing, Told};
 use crate::friction::{AnyState, FrictionLaw, Law, LawState, Statistics};
 use crate::integrate::{
-    Acting, Division, Efforts, Integrator, Longest, MOST_PARTS, Plain, Steps, Stillness, finer,
-    parts, sample,
+    Division, Glide, Integrator, Longest, MOST_PARTS, Plain, Steps, finer, parts, sample,
 };
 use crate::math::scalar::Scalar;
 use crate::plant::drive::{Way, arriving};
-use crate::plant::{Machine, Run};
+use crate::plant::{Before, Machine, Run};
 use crate::simulate::model::CHUNK;
 use crate::simulate::range::{Range, ordinary_motor};
 use crate::support::error::{Error, Result};
@@ -184,7 +184,7 @@ impl<S: Scalar> Running<S> {
             );
             let parts = pieces * whole_parts(steps * finer, self.most_parts, dt)?;
             state.make_room(parts as usize + CHUNK / 4);
-            let before = self.run;
+            let before = Before::of(&self.run);
             let arrived = arriving(&mut self.way.as_mut(), input, more_input, dt);
             let load = more_load.map_or(S::constant(load), |more| more + load);
             let whole =
@@ -202,7 +202,7 @@ impl<S: Scalar> Running<S> {
                 meter,
             )?;
             self.machine.wind(&mut self.run, arrived, dt);
-            self.machine.remember(&before, &mut self.run);
+            self.machine.remember(before, &mut self.run);
             Ok(())
         })
     }
@@ -263,7 +263,7 @@ impl<S: Scalar> Running<S> {
             PerSample::Same(dt) => self.parts(dt) * samples as f64,
             PerSample::Each(values) => self.parts(values.iter().sum()),
         };
-        let plain = self.has_rows() && self.goes_plainly(around);
+        let plain = self.has_rows(around);
         let cost = with_law!(&self.law, |law| if plain && law.glides() {
             work::in_a_row::<S>() * law.glide_cost()
         } else {
@@ -272,14 +272,11 @@ impl<S: Scalar> Running<S> {
         parts * cost as f64
     }
 
-    /// Whether this motor has plain steps.
-    fn has_rows(&self) -> bool {
-        self.machine.is_bare() || (self.machine.is_unchanged() && self.way.is_none())
-    }
-
-    /// Whether plain steps may go in rows.
-    fn goes_plainly(&self, around: &Surroundings<'_>) -> bool {
-        self.integrator == Integrator::Fast && around.is_steady()
+    /// Whether plain steps of this motor go in rows.
+    fn has_rows(&self, around: &Surroundings<'_>) -> bool {
+        let bare = self.machine.is_bare();
+        let has = if bare { around.is_steady() } else { self.machine.has_rows() };
+        has && self.integrator == Integrator::Fast
     }
 
     fn simulate_kind<const BARE: bool>(
@@ -291,11 +288,15 @@ impl<S: Scalar> Running<S> {
         mut rows: impl Rows<S>,
         meter: &mut Meter,
     ) -> Result<()> {
-        let plain = (BARE || self.has_rows()) && self.goes_plainly(&around);
-        let mut way = self.way.as_mut();
+        let plain = self.has_rows(&around);
+        let strains = !BARE && self.machine.effects.strains();
+        // What is said of the drive without asking where the body is holds while it is on.
+        let by_place = !BARE && (self.machine.drives_by_place() || !around.is_steady());
+        // How finely a sample goes hangs on its input before anything holds that up.
+        let alone = !BARE && (!around.is_steady() || (strains && self.way.is_some()));
+        let mut notes = Notes::new(&self.machine, self.way.as_mut(), &self.run);
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
-            let strains = !BARE && self.machine.effects.strains();
             let mut known = f64::NAN;
             let (mut plainly, mut divided, mut pieces) = (1.0, 1, 1);
             let (longest, integrator) = (self.longest, self.integrator);
@@ -333,8 +334,9 @@ impl<S: Scalar> Running<S> {
                     } else {
                         (steps.span, divided)
                     };
-                    let machine = &self.machine;
-                    if !S::CARRIES {
+                    let machine = &mut self.machine;
+                    let asked = S::CARRIES || by_place || notes.holds_up();
+                    if !asked {
                         ahead.reach(index, inputs, around.load, |k, input, load| {
                             let load = added(k) + load;
                             let effort = if BARE {
@@ -345,40 +347,50 @@ impl<S: Scalar> Running<S> {
                             effort.re()
                         });
                     }
-                    let efforts = Applied::<_, _, BARE> {
+                    // Not to the end, which would be looked for anew after every event.
+                    let end = if asked { inputs.len().min(index + AHEAD) } else { ahead.end() };
+                    let end = if alone { index + 1 } else { dt.same_until(index, end) };
+                    let most = if S::CARRIES { MOST_AT_ONCE / 8 } else { MOST_AT_ONCE };
+                    let end = end.min(index + 1 + most / parts as usize);
+                    notes.begin(&self.run);
+                    let verlet = machine.verlet(span);
+                    let (counts, rough) = if BARE {
+                        (false, 0.0)
+                    } else {
+                        let rough = machine.roughness(law.greatest_stiffness(), span.re());
+                        (machine.counts_work(), rough)
+                    };
+                    let mut efforts = Applied::<_, _, BARE> {
                         machine,
                         inputs,
                         around,
                         added: &added,
-                        ahead: &ahead,
+                        ahead: &mut ahead,
+                        notes: &mut notes,
+                        by_place,
+                        dt: dt_now,
                         span,
-                        counts: !BARE && machine.counts_work(),
-                        rough: if BARE {
-                            0.0
-                        } else {
-                            machine.roughness(law.greatest_stiffness(), span.re())
-                        },
+                        end,
+                        counts,
+                        rough,
                     };
-                    // Not to the end, which would be looked for anew after every event.
-                    let end =
-                        if S::CARRIES { inputs.len().min(index + AHEAD) } else { ahead.end() };
-                    let end = dt.same_until(index, end);
-                    let most = if S::CARRIES { MOST_AT_ONCE / 8 } else { MOST_AT_ONCE };
-                    let end = end.min(index + 1 + most / parts as usize);
+                    if !BARE {
+                        efforts.begin(index);
+                    }
                     let begun = index;
                     let (samples, state) = (index..end, &mut *state);
-                    let step = (span, parts);
+                    let step = (verlet, parts);
                     (self.run, index, passed) = if S::CARRIES {
-                        let seen = Showing { machine, rows: &mut rows };
-                        let mut glide = machine.glide(self.run, efforts, seen, samples, step);
+                        let seen = Showing(&mut rows);
+                        let mut glide = Glide::new(self.run, efforts, seen, samples, step);
                         S::run(Plain { law, state, glide: &mut glide });
                         (glide.run, glide.samples.start, glide.part)
                     } else if BARE && let Some(places) = rows.places(samples.clone()) {
-                        let glide = machine.glide(self.run, efforts, places, samples, step);
+                        let glide = Glide::new(self.run, efforts, places, samples, step);
                         S::run(Plain { law, state, glide })
                     } else {
-                        let seen = Showing { machine, rows: &mut rows };
-                        let glide = machine.glide(self.run, efforts, seen, samples, step);
+                        let seen = Showing(&mut rows);
+                        let glide = Glide::new(self.run, efforts, seen, samples, step);
                         S::run(Plain { law, state, glide })
                     };
                     room = 0; // what the glide has left of it nobody counted
@@ -386,7 +398,8 @@ impl<S: Scalar> Running<S> {
                         passed *= pieces;
                     }
                     let steps = (index - begun) as u64 * u64::from(parts);
-                    meter.take(steps * work::in_a_row::<S>() * law.glide_cost())?;
+                    let begin = if alone { work::A_ROW } else { 0 };
+                    meter.take((begin + steps * law.glide_cost()) * work::in_a_row::<S>())?;
                     // Also what needs other steps from here on.
                     if index == end || (strains && index > begun && passed == 0) {
                         continue;
@@ -395,6 +408,7 @@ impl<S: Scalar> Running<S> {
                 if self.run.is_lost() {
                     let seen = &*state;
                     rows.see(index, &self.run, &self.machine, |column| seen.output(column));
+                    notes.give_up();
                     index += 1;
                     continue;
                 }
@@ -405,8 +419,10 @@ impl<S: Scalar> Running<S> {
                     state.make_room(room as usize + CHUNK / 4);
                 }
                 room -= left;
-                let before = self.run;
-                let arrived = arriving(&mut way, inputs[index], None, dt_now);
+                if passed == 0 {
+                    notes.begin(&self.run);
+                }
+                let arrived = notes.arriving(inputs[index], dt_now);
                 sample::<_, _, BARE>(
                     &self.machine,
                     law,
@@ -420,102 +436,13 @@ impl<S: Scalar> Running<S> {
                     meter,
                 )?;
                 self.machine.wind(&mut self.run, arrived, dt_now);
-                self.machine.remember(&before, &mut self.run);
+                self.machine.remember(notes.before, &mut self.run);
                 let seen = &*state;
                 rows.see(index, &self.run, &self.machine, |column| seen.output(column));
                 index += 1;
             }
         });
         Ok(())
-    }
-}
-
-/// All effort but friction on a bare machine; on another that is unchanged, that of the drive and the load.
-struct Applied<'a, S: Scalar, A, const BARE: bool> {
-    machine: &'a Machine<S>,
-    inputs: &'a [f64],
-    around: Surroundings<'a>,
-    added: &'a A,
-    ahead: &'a Ahead,
-    /// Duration of a step.
-    span: S,
-    /// Whether the work of the contact is counted, in steps as rough as that.
-    counts: bool,
-    rough: f64,
-}
-
-impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, S, A, BARE> {
-    #[inline(always)]
-    fn load(&self, sample: usize) -> S {
-        (self.added)(sample) + self.around.load.at(sample)
-    }
-}
-
-impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, S, A, BARE> {
-    const HELD: bool = BARE;
-
-    #[inline(always)]
-    fn beside(
-        &self,
-        sample: usize,
-        run: &Run<S>,
-        displacement: S,
-        velocity: S,
-        span: S,
-    ) -> Acting<S> {
-        let acting = || (self.at(sample), self.load(sample));
-        self.machine.beside(run, acting, displacement, velocity, span)
-    }
-
-    #[inline(always)]
-    fn levels(&self, sample: usize, run: &Run<S>, arrived: Option<&Acting<S>>) -> (S, S) {
-        if BARE {
-            return (S::constant(1.0), S::constant(1.0));
-        }
-        self.machine.levels_of(run, || (self.at(sample), self.load(sample)), arrived)
-    }
-
-    #[inline(always)]
-    fn settle(&self, run: &mut Run<S>, from: (S, S), efforts: (S, S)) {
-        if self.counts {
-            self.machine.settle(run, from, efforts, (self.rough, self.span.re()));
-        }
-    }
-
-    #[inline(always)]
-    fn is_fine(&self, speed: f64, effort: f64, levels: (S, S)) -> bool {
-        self.machine.is_fine(speed, effort, levels, self.span.re())
-    }
-
-    fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S)) -> Stillness {
-        self.machine.stillness(run, greatest, levels, self.span)
-    }
-
-    #[inline(always)]
-    fn at(&self, sample: usize) -> S {
-        if !S::CARRIES {
-            return S::constant(self.ahead.at(sample));
-        }
-        let load = self.load(sample);
-        if BARE {
-            self.machine.bare_effort(self.inputs[sample], load)
-        } else {
-            self.machine.driven_directly(self.inputs[sample], load)
-        }
-    }
-
-    #[inline(always)]
-    fn within(&self, samples: std::ops::Range<usize>, greatest: f64) -> usize {
-        let plain = |effort: &f64| effort.abs() <= greatest;
-        if S::CARRIES {
-            return samples.take_while(|k| plain(&self.at(*k).re())).count();
-        }
-        // Without a choice in eight of them they become vectors.
-        let efforts = self.ahead.of(samples);
-        let eights = efforts.chunks_exact(8);
-        let whole = |eight: &&[f64]| eight.iter().fold(true, |all, effort| all & plain(effort));
-        let passed = 8 * eights.take_while(whole).count();
-        passed + efforts[passed..].iter().take_while(|effort| plain(effort)).count()
     }
 }
 
@@ -526,65 +453,3 @@ const fn steep<S: Scalar, L: FrictionLaw<S>>(_: &L) -> bool {
 
 /// Steps of a row of plain steps after which is asked whether to go on.
 const MOST_AT_ONCE: usize = 1 << 15;
-/// Samples that a row of plain steps goes on at most.
-const AHEAD: usize = 8 * CHUNK;
-
-/// Efforts of some samples, made before the loop that asks for them one by one: by themselves they
-/// become vectors.
-struct Ahead {
-    from: usize,
-    number: usize,
-    efforts: [f64; AHEAD],
-}
-
-impl Default for Ahead {
-    fn default() -> Self {
-        Self { from: 0, number: 0, efforts: [0.0; AHEAD] }
-    }
-}
-
-impl Ahead {
-    /// Has the effort of this sample and of those behind it, made of sample, input and load.
-    #[inline(always)]
-    fn reach(
-        &mut self,
-        sample: usize,
-        inputs: &[f64],
-        loads: PerSample<'_>,
-        effort: impl Fn(usize, f64, f64) -> f64,
-    ) {
-        if self.from <= sample && sample < self.end() {
-            return;
-        }
-        self.from = sample;
-        self.number = AHEAD.min(inputs.len() - sample);
-        let end = self.end();
-        let places = self.efforts[..self.number].iter_mut();
-        let given = (sample..end).zip(&inputs[sample..end]);
-        // What the loop had to ask of each sample would keep it from vectors.
-        if let PerSample::Same(load) = loads {
-            for (place, (k, input)) in places.zip(given) {
-                *place = effort(k, *input, load);
-            }
-        } else {
-            for (place, (k, input)) in places.zip(given) {
-                *place = effort(k, *input, loads.at(k));
-            }
-        }
-    }
-
-    /// The first sample that it does not have.
-    fn end(&self) -> usize {
-        self.from + self.number
-    }
-
-    #[inline(always)]
-    fn at(&self, sample: usize) -> f64 {
-        self.efforts[sample - self.from]
-    }
-
-    #[inline(always)]
-    fn of(&self, samples: std::ops::Range<usize>) -> &[f64] {
-        &self.efforts[samples.start - self.from..samples.end - self.from]
-    }
-}

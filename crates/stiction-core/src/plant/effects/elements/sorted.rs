@@ -38,6 +38,8 @@ pub struct Effects<S: Scalar> {
     /// the sensor reads.
     even_effort: Option<S>,
     inputs: Vec<usize>,
+    /// Whether any of those on the input goes by place or speed.
+    by_place: bool,
     sensors: Vec<usize>,
     delay: Option<S>,
     slowness: Option<S>,
@@ -64,6 +66,7 @@ impl<S: Scalar> Effects<S> {
             efforts: Vec::new(),
             even_effort: Some(S::constant(0.0)),
             inputs: Vec::new(),
+            by_place: false,
             sensors: Vec::new(),
             delay: None,
             slowness: None,
@@ -93,7 +96,10 @@ impl<S: Scalar> Effects<S> {
                         sorted.even_effort = sum_of_all(sorted.even_effort, even);
                         sorted.efforts.push(even.map_or(wave, Term::Even));
                     }
-                    Hook::InputMap => sorted.inputs.push(place),
+                    Hook::InputMap => {
+                        sorted.inputs.push(place);
+                        sorted.by_place |= effect.maps_by_place();
+                    }
                     Hook::SensorMap => sorted.sensors.push(place),
                     Hook::InputDelay => {
                         sorted.delay = sum(sorted.delay, with_effect!(&effect, |e| e.delay()));
@@ -273,9 +279,7 @@ impl<S: Scalar> Effects<S> {
     /// what the sensor reads.
     #[inline(always)]
     pub fn even_effort(&self) -> Option<S> {
-        let (friction, viscous, effort) = self.unit;
-        let seeded = [friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero());
-        if seeded { None } else { self.even_effort }
+        if self.is_seeded() { None } else { self.even_effort }
     }
 
     /// Whether any effect adds an effort.
@@ -289,12 +293,21 @@ impl<S: Scalar> Effects<S> {
         self.inputs.is_empty() && !self.adds_efforts() && !self.changes_levels()
     }
 
-    /// Whether effects do nothing but add efforts and change levels, without a memory, or misread the position.
-    pub fn only_push(&self) -> bool {
-        let kept = self.delay.is_none() && self.slowness.is_none() && self.lag.is_none();
+    /// Whether derivatives are wanted by the levels or by an added effort, see [`Self::seed`].
+    pub fn is_seeded(&self) -> bool {
         let (friction, viscous, effort) = self.unit;
-        let seeded = [friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero());
-        kept && self.inputs.is_empty() && !self.remembers && !seeded
+        [friction, viscous, effort].iter().any(|seed| seed.derivative_is_nonzero())
+    }
+
+    /// Whether any effect changes the input.
+    #[inline(always)]
+    pub fn maps_inputs(&self) -> bool {
+        !self.inputs.is_empty()
+    }
+
+    /// Whether any changes it by where the body is or how fast.
+    pub fn maps_by_place(&self) -> bool {
+        self.by_place
     }
 
     /// What the input becomes.

@@ -1,0 +1,297 @@
+//! What acts on a motor in a row of plain steps, sample by sample.
+
+use super::column::OfMachine;
+use crate::integrate::{Acting, Efforts, Stillness};
+use crate::math::scalar::Scalar;
+use crate::plant::drive::{Way, arriving};
+use crate::plant::effects::Situation;
+use crate::plant::{Before, Machine, Run};
+use crate::simulate::model::CHUNK;
+use crate::support::samples::{PerSample, Surroundings};
+
+/// What is noted from sample to sample.
+pub(super) struct Notes<'a, S: Scalar> {
+    /// Whether anything is.
+    any: bool,
+    /// Whether the machine takes note of samples that have ended.
+    takes: bool,
+    /// What holds the input up.
+    way: Option<&'a mut Way<S>>,
+    /// What has arrived of it in the present sample, and the effort that it makes with the load.
+    arrived: Option<S>,
+    held: Option<S>,
+    /// Where the run was before that sample.
+    pub(super) before: Before<S>,
+}
+
+impl<'a, S: Scalar> Notes<'a, S> {
+    pub(super) fn new(machine: &Machine<S>, way: Option<&'a mut Way<S>>, run: &Run<S>) -> Self {
+        let takes = machine.notes_samples();
+        let (any, before) = (takes || way.is_some(), Before::of(run));
+        Self { any, takes, way, arrived: None, held: None, before }
+    }
+
+    /// Whether inputs are on their way for long.
+    pub(super) fn holds_up(&self) -> bool {
+        self.way.is_some()
+    }
+
+    /// A sample begins where a run is.
+    pub(super) fn begin(&mut self, run: &Run<S>) {
+        self.before = Before::of(run);
+    }
+
+    /// What arrives in the present sample, once.
+    pub(super) fn arriving(&mut self, input: f64, dt: f64) -> S {
+        self.held = None;
+        self.arrived.take().unwrap_or_else(|| arriving(&mut self.way, input, None, dt))
+    }
+
+    /// The present sample is given up.
+    pub(super) fn give_up(&mut self) {
+        (self.arrived, self.held) = (None, None);
+    }
+}
+
+/// All effort but friction on a bare machine; on another, that of the drive and the load.
+pub(super) struct Applied<'a, 'b, S: Scalar, A, const BARE: bool> {
+    pub(super) machine: &'a mut Machine<S>,
+    pub(super) inputs: &'a [f64],
+    pub(super) around: Surroundings<'a>,
+    pub(super) added: &'a A,
+    pub(super) ahead: &'a mut Ahead,
+    /// What is noted of the samples, where anything is.
+    pub(super) notes: &'a mut Notes<'b, S>,
+    /// Whether the drive goes by place and speed.
+    pub(super) by_place: bool,
+    /// Duration of a sample, and of a step.
+    pub(super) dt: f64,
+    pub(super) span: S,
+    /// The first sample that is not in the row.
+    pub(super) end: usize,
+    /// Whether the work of the contact is counted, in steps as rough as that.
+    pub(super) counts: bool,
+    pub(super) rough: f64,
+}
+
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE> {
+    #[inline(always)]
+    fn load(&self, sample: usize) -> S {
+        (self.added)(sample) + self.around.load.at(sample)
+    }
+
+    /// Begins a row with this sample.
+    pub(super) fn begin(&mut self, sample: usize) {
+        if self.notes.arrived.is_none() {
+            self.arrive(sample);
+        }
+    }
+
+    /// What arrives in a sample of an input that is on its way for long.
+    fn arrive(&mut self, sample: usize) {
+        let notes = &mut *self.notes;
+        let Some(way) = &mut notes.way else { return };
+        let input = way.pass(self.inputs[sample], None, self.dt);
+        notes.arrived = Some(input);
+        if self.by_place {
+            return;
+        }
+        let load = (self.added)(sample) + self.around.load.at(sample);
+        let held = self.machine.driven_anywhere(input, load);
+        self.ahead.hold(sample, held.re());
+        self.notes.held = Some(held);
+    }
+
+    /// Takes note of a sample that has ended, and begins the next.
+    #[inline(never)] // of what notes nothing it would take the registers
+    fn note(&mut self, sample: usize, run: &mut Run<S>) {
+        let notes = &mut *self.notes;
+        let arrived = notes.arrived.take();
+        notes.held = None;
+        if notes.takes {
+            let goal = arrived.unwrap_or(S::constant(self.inputs[sample]));
+            self.machine.wind(run, goal, self.dt);
+            self.machine.remember(notes.before, run);
+            notes.before = Before::of(run);
+        }
+        if sample + 1 < self.end {
+            self.arrive(sample + 1);
+        }
+    }
+
+    /// Effort of a drive that goes by place and speed, and the load.
+    #[inline(always)]
+    fn driving_at(&self, sample: usize, at: &Situation<S>) -> S {
+        let input = self.notes.arrived.unwrap_or(S::constant(self.inputs[sample]));
+        self.machine.driven_there(input, at) + self.load(sample)
+    }
+}
+
+impl<S: Scalar, A, const BARE: bool> OfMachine<S> for Applied<'_, '_, S, A, BARE> {
+    #[inline(always)]
+    fn machine(&self) -> &Machine<S> {
+        self.machine
+    }
+}
+
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, '_, S, A, BARE> {
+    const HELD: bool = BARE;
+
+    #[inline(always)]
+    fn driving(&self, sample: usize, run: &Run<S>) -> S {
+        if self.by_place { self.driving_at(sample, &run.situation()) } else { self.at(sample) }
+    }
+
+    #[inline(always)]
+    fn acting(
+        &self,
+        sample: usize,
+        run: &Run<S>,
+        displacement: S,
+        velocity: S,
+        span: S,
+    ) -> Acting<S> {
+        let at = run.situation().after(displacement, velocity, span);
+        let driving = |at: &Situation<S>| {
+            if self.by_place { self.driving_at(sample, at) } else { self.at(sample) }
+        };
+        self.machine.acting(&at, driving, || self.load(sample))
+    }
+
+    #[inline(always)]
+    fn levels(&self, sample: usize, run: &Run<S>, arrived: Option<&Acting<S>>) -> (S, S) {
+        if BARE {
+            return (S::constant(1.0), S::constant(1.0));
+        }
+        let acting = || (self.driving(sample, run), self.load(sample));
+        self.machine.levels_of(run, acting, arrived)
+    }
+
+    #[inline(always)]
+    fn settle(&self, sample: usize, run: &mut Run<S>, from: (S, S), mut efforts: (S, S)) {
+        if self.counts {
+            if self.by_place {
+                // At the speed that it has got, not at the one that the step was shown.
+                efforts.1 = self.driving(sample, run) + run.ambient;
+            }
+            self.machine.settle(run, from, efforts, (self.rough, self.span.re()));
+        }
+    }
+
+    #[inline(always)]
+    fn is_fine(&self, speed: f64, effort: f64, levels: (S, S)) -> bool {
+        self.machine.is_fine(speed, effort, levels, self.span.re())
+    }
+
+    fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S)) -> Stillness {
+        match self.machine.stillness(run, greatest, levels, self.span) {
+            Stillness::Whole if self.notes.any => Stillness::Changing,
+            stillness => stillness,
+        }
+    }
+
+    #[inline(always)]
+    fn ended(&mut self, sample: usize, run: &mut Run<S>) {
+        if !BARE && self.notes.any {
+            self.note(sample, run);
+        }
+    }
+
+    #[inline(always)]
+    fn at(&self, sample: usize) -> S {
+        if !S::CARRIES {
+            return S::constant(self.ahead.at(sample));
+        }
+        if !BARE && let Some(held) = self.notes.held {
+            return held;
+        }
+        let load = self.load(sample);
+        if BARE {
+            self.machine.bare_effort(self.inputs[sample], load)
+        } else {
+            self.machine.driven_directly(self.inputs[sample], load)
+        }
+    }
+
+    #[inline(always)]
+    fn within(&self, samples: std::ops::Range<usize>, greatest: f64) -> usize {
+        let plain = |effort: &f64| effort.abs() <= greatest;
+        if S::CARRIES {
+            return samples.take_while(|k| plain(&self.at(*k).re())).count();
+        }
+        // Without a choice in eight of them they become vectors.
+        let efforts = self.ahead.of(samples);
+        let eights = efforts.chunks_exact(8);
+        let whole = |eight: &&[f64]| eight.iter().fold(true, |all, effort| all & plain(effort));
+        let passed = 8 * eights.take_while(whole).count();
+        passed + efforts[passed..].iter().take_while(|effort| plain(effort)).count()
+    }
+}
+
+/// Samples that a row of plain steps goes on at most.
+pub(super) const AHEAD: usize = 8 * CHUNK;
+
+/// Efforts of some samples, made before the loop that asks for them one by one: by themselves they
+/// become vectors.
+pub(super) struct Ahead {
+    from: usize,
+    number: usize,
+    efforts: [f64; AHEAD],
+}
+
+impl Default for Ahead {
+    fn default() -> Self {
+        Self { from: 0, number: 0, efforts: [0.0; AHEAD] }
+    }
+}
+
+impl Ahead {
+    /// Has the effort of this sample and of those behind it, made of sample, input and load.
+    #[inline(always)]
+    pub(super) fn reach(
+        &mut self,
+        sample: usize,
+        inputs: &[f64],
+        loads: PerSample<'_>,
+        effort: impl Fn(usize, f64, f64) -> f64,
+    ) {
+        if self.from <= sample && sample < self.end() {
+            return;
+        }
+        self.from = sample;
+        self.number = AHEAD.min(inputs.len() - sample);
+        let end = self.end();
+        let places = self.efforts[..self.number].iter_mut();
+        let given = (sample..end).zip(&inputs[sample..end]);
+        // What the loop had to ask of each sample would keep it from vectors.
+        if let PerSample::Same(load) = loads {
+            for (place, (k, input)) in places.zip(given) {
+                *place = effort(k, *input, load);
+            }
+        } else {
+            for (place, (k, input)) in places.zip(given) {
+                *place = effort(k, *input, loads.at(k));
+            }
+        }
+    }
+
+    /// Has this effort in a sample, and that of no other one.
+    fn hold(&mut self, sample: usize, effort: f64) {
+        (self.from, self.number, self.efforts[0]) = (sample, 1, effort);
+    }
+
+    /// The first sample that it does not have.
+    pub(super) fn end(&self) -> usize {
+        self.from + self.number
+    }
+
+    #[inline(always)]
+    fn at(&self, sample: usize) -> f64 {
+        self.efforts[sample - self.from]
+    }
+
+    #[inline(always)]
+    fn of(&self, samples: std::ops::Range<usize>) -> &[f64] {
+        &self.efforts[samples.start - self.from..samples.end - self.from]
+    }
+}
