@@ -136,7 +136,7 @@ pub trait Efforts<S: Scalar> {
     /// What acts in a sample where a run will be after such a displacement, at such a velocity.
     #[inline(always)]
     fn acting(
-        &self,
+        &mut self,
         _sample: usize,
         run: &Run<S>,
         _displacement: S,
@@ -154,7 +154,10 @@ pub trait Efforts<S: Scalar> {
     /// Takes note of what a step of a sample did to a run, which began at this position and velocity, under
     /// these efforts at its start and its end; the run may come out slower.
     #[inline(always)]
-    fn settle(&self, _sample: usize, _run: &mut Run<S>, _from: (S, S), _efforts: (S, S)) {}
+    fn settle(&mut self, _sample: usize, _run: &mut Run<S>, _from: (S, S), _efforts: (S, S)) {}
+    /// Lets go on what moves beside a body that is held for a step.
+    #[inline(always)]
+    fn held(&mut self, _run: &mut Run<S>, _span: S) {}
     /// Takes note of a sample that has ended with a run, and begins the next.
     #[inline(always)]
     fn ended(&mut self, _sample: usize, _run: &mut Run<S>) {}
@@ -269,6 +272,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
             }
             self.run.time += self.verlet.span;
             self.run.friction = effort;
+            self.efforts.held(&mut self.run, self.verlet.span);
             held = Some(effort);
             self.part += 1;
             if self.part == self.parts {

@@ -21,15 +21,17 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// What acts on this machine and its contact where a step leads that is in a row; `driving` says the effort
-    /// of the drive and a load there, `load` that load.
+    /// of the drive and a load there, `load` that load; `pull` is what a second mass does.
     #[inline(always)]
     pub fn acting(
         &self,
         at: &Situation<S>,
         driving: impl FnOnce(&Situation<S>) -> S,
         load: impl FnOnce() -> S,
+        pull: Option<S>,
     ) -> Acting<S> {
-        let ambient = self.surroundings(at);
+        let beside = self.surroundings(at);
+        let ambient = pull.map_or(beside, |pull| beside + pull);
         let driving = driving(at);
         if !self.effects.changes_levels() {
             return Acting { driving, ..Acting::plain(ambient) };

@@ -103,10 +103,9 @@ impl<S: Scalar> Machine<S> {
         alone && self.effects.even_effort().is_some() && self.drive.servo.is_none()
     }
 
-    /// Whether its steps may go in rows: nothing swings beside the body, and nothing gives way in series with
-    /// the contact.
+    /// Whether its steps may go in rows: nothing gives way in series with the contact.
     pub fn has_rows(&self) -> bool {
-        self.shaft.is_none() && !self.relaxes() && !self.effects.is_seeded()
+        !self.relaxes() && !self.effects.is_seeded()
     }
 
     /// Whether such a row ends with its sample: something takes note of it.
@@ -187,15 +186,10 @@ impl<S: Scalar> Machine<S> {
         span: S,
         run: &mut Run<S>,
     ) {
-        let Some(shaft) = self.shaft else { return };
-        let half = span * 0.5;
-        let pull = self.shaft(start, run.second_position, run.second_velocity);
-        let slowing = -(pull / shaft.inertia + shaft.load_damping * run.second_velocity);
-        run.second_position += span * (run.second_velocity + half * slowing);
-        let arriving = run.second_velocity + span * slowing;
-        let pull_then = self.shaft(end, run.second_position, arriving);
-        let dragged = shaft.load_damping * (run.second_velocity + arriving);
-        run.second_velocity -= half * (pull + pull_then) / shaft.inertia + half * dragged;
+        if let Some(shaft) = &self.shaft {
+            let second = (run.second_position, run.second_velocity);
+            (run.second_position, run.second_velocity) = shaft.swing(start, end, span, second);
+        }
     }
 
     /// Effort that does not come from input and load.

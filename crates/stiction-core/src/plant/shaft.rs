@@ -1,6 +1,6 @@
 //! A second mass on a shaft: as part of a simulated machine, and seen from a measured motion.
 
-use super::effects::{Coupling, SecondMass};
+use super::effects::{Coupling, SecondMass, Situation};
 use super::gap::{Bounce, Flight};
 use crate::math::scalar::{Scalar, sign};
 
@@ -54,6 +54,25 @@ impl<S: Scalar> Shaft<S> {
                 Some(Self { inertia: far, stiffness, damping, play, load_damping })
             }
         }
+    }
+
+    /// Where the second mass gets to, and how fast, while the motor goes from one situation to another.
+    #[inline]
+    pub(crate) fn swing(
+        &self,
+        start: &Situation<S>,
+        end: &Situation<S>,
+        span: S,
+        (position, velocity): (S, S),
+    ) -> (S, S) {
+        let half = span * 0.5;
+        let pull = self.pull(position - start.position, velocity - start.velocity);
+        let slowing = -(pull / self.inertia + self.load_damping * velocity);
+        let position = position + span * (velocity + half * slowing);
+        let arriving = velocity + span * slowing;
+        let pull_then = self.pull(position - end.position, arriving - end.velocity);
+        let dragged = self.load_damping * (velocity + arriving);
+        (position, velocity - (half * (pull + pull_then) / self.inertia + half * dragged))
     }
 
     /// Effort on the motor where the second mass is that far ahead of it, and that much faster.

@@ -22,13 +22,16 @@ pub(super) struct Notes<'a, S: Scalar> {
     held: Option<S>,
     /// Where the run was before that sample.
     pub(super) before: Before<S>,
+    /// Where a second mass is and how fast at the end of a step that is looked at.
+    second: (S, S),
 }
 
 impl<'a, S: Scalar> Notes<'a, S> {
     pub(super) fn new(machine: &Machine<S>, way: Option<&'a mut Way<S>>, run: &Run<S>) -> Self {
         let takes = machine.notes_samples();
         let (any, before) = (takes || way.is_some(), Before::of(run));
-        Self { any, takes, way, arrived: None, held: None, before }
+        let second = (run.second_position, run.second_velocity);
+        Self { any, takes, way, arrived: None, held: None, before, second }
     }
 
     /// Whether inputs are on their way for long.
@@ -64,6 +67,8 @@ pub(super) struct Applied<'a, 'b, S: Scalar, A, const BARE: bool> {
     pub(super) notes: &'a mut Notes<'b, S>,
     /// Whether the drive goes by place and speed.
     pub(super) by_place: bool,
+    /// Whether a second mass swings.
+    pub(super) swings: bool,
     /// Duration of a sample, and of a step.
     pub(super) dt: f64,
     pub(super) span: S,
@@ -85,6 +90,16 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE>
         if self.notes.arrived.is_none() {
             self.arrive(sample);
         }
+    }
+
+    /// Where the second mass gets to while a run comes to a place within `span`: noted for when it is there.
+    /// Gives what it does to the motor then.
+    #[inline(never)] // once for all laws
+    fn swing(&mut self, run: &Run<S>, at: &Situation<S>, span: S) -> S {
+        let second = (run.second_position, run.second_velocity);
+        let Some(shaft) = &self.machine.shaft else { return S::constant(0.0) };
+        self.notes.second = shaft.swing(&run.situation(), at, span, second);
+        self.machine.shaft(at, self.notes.second.0, self.notes.second.1)
     }
 
     /// What arrives in a sample of an input that is on its way for long.
@@ -144,7 +159,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn acting(
-        &self,
+        &mut self,
         sample: usize,
         run: &Run<S>,
         displacement: S,
@@ -152,10 +167,11 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         span: S,
     ) -> Acting<S> {
         let at = run.situation().after(displacement, velocity, span);
+        let pull = if self.swings { Some(self.swing(run, &at, span)) } else { None };
         let driving = |at: &Situation<S>| {
             if self.by_place { self.driving_at(sample, at) } else { self.at(sample) }
         };
-        self.machine.acting(&at, driving, || self.load(sample))
+        self.machine.acting(&at, driving, || self.load(sample), pull)
     }
 
     #[inline(always)]
@@ -168,7 +184,10 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
     }
 
     #[inline(always)]
-    fn settle(&self, sample: usize, run: &mut Run<S>, from: (S, S), mut efforts: (S, S)) {
+    fn settle(&mut self, sample: usize, run: &mut Run<S>, from: (S, S), mut efforts: (S, S)) {
+        if self.swings {
+            (run.second_position, run.second_velocity) = self.notes.second;
+        }
         if self.counts {
             if self.by_place {
                 // At the speed that it has got, not at the one that the step was shown.
@@ -185,8 +204,17 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S)) -> Stillness {
         match self.machine.stillness(run, greatest, levels, self.span) {
-            Stillness::Whole if self.notes.any => Stillness::Changing,
+            Stillness::Whole if self.notes.any || self.swings => Stillness::Changing,
             stillness => stillness,
+        }
+    }
+
+    #[inline(always)]
+    fn held(&mut self, run: &mut Run<S>, span: S) {
+        if self.swings || self.notes.takes {
+            let at = run.situation();
+            self.machine.swing(&at, &at, span, run);
+            self.machine.refresh(run);
         }
     }
 

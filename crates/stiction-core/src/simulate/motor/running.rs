@@ -292,6 +292,7 @@ impl<S: Scalar> Running<S> {
         let strains = !BARE && self.machine.effects.strains();
         // What is said of the drive without asking where the body is holds while it is on.
         let by_place = !BARE && (self.machine.drives_by_place() || !around.is_steady());
+        let swings = !BARE && self.machine.shaft.is_some();
         // How finely a sample goes hangs on its input before anything holds that up.
         let alone = !BARE && (!around.is_steady() || (strains && self.way.is_some()));
         let mut notes = Notes::new(&self.machine, self.way.as_mut(), &self.run);
@@ -368,6 +369,7 @@ impl<S: Scalar> Running<S> {
                         ahead: &mut ahead,
                         notes: &mut notes,
                         by_place,
+                        swings,
                         dt: dt_now,
                         span,
                         end,
