@@ -133,23 +133,28 @@ pub trait Efforts<S: Scalar> {
     fn driving(&self, sample: usize, _run: &Run<S>) -> S {
         self.at(sample)
     }
-    /// What acts in a sample where a run will be after such a displacement, at such a velocity.
+    /// Puts into its place what acts in a sample where a run will be after such a displacement, at such a
+    /// velocity.
     #[inline(always)]
     fn acting(
         &mut self,
         _sample: usize,
-        run: &Run<S>,
-        _displacement: S,
-        _velocity: S,
+        _run: &Run<S>,
+        (_displacement, _velocity): (S, S),
         _span: S,
-    ) -> Acting<S> {
-        Acting::plain(run.ambient)
+        _there: &mut Acting<S>,
+    ) {
     }
-    /// Levels where a run is; `arrived` is what was said of its place before its velocity was known, if
+    /// Puts into their place the levels where a run is; `arrived` is what was said of its place before its velocity was known, if
     /// anything was.
     #[inline(always)]
-    fn levels(&self, _sample: usize, _run: &Run<S>, _arrived: Option<&Acting<S>>) -> (S, S) {
-        (S::constant(1.0), S::constant(1.0))
+    fn levels(
+        &self,
+        _sample: usize,
+        _run: &Run<S>,
+        _arrived: Option<&Acting<S>>,
+        _levels: &mut (S, S),
+    ) {
     }
     /// Takes note of what a step of a sample did to a run, which began at this position and velocity, under
     /// these efforts at its start and its end; the run may come out slower.
@@ -224,8 +229,9 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         samples: Range<usize>,
         (verlet, parts): (Verlet<S>, u32),
     ) -> Self {
-        let levels = efforts.levels(samples.start, &run, None);
         let (efforts_of_step, there) = ((run.ambient, run.ambient), Acting::plain(run.ambient));
+        let mut levels = there.levels;
+        efforts.levels(samples.start, &run, None, &mut levels);
         Self { verlet, run, efforts, seen, samples, part: 0, parts, levels, efforts_of_step, there }
     }
 
@@ -279,17 +285,18 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
                 self.part = 0;
                 self.end_sample(contact);
             }
-            self.go_on(None);
+            self.go_on(false);
         }
         held
     }
 
-    /// What a step begins with after another one.
+    /// What a step begins with after another one, which has arrived where it led or was held.
     #[inline(always)]
-    fn go_on(&mut self, arrived: Option<Acting<S>>) {
+    fn go_on(&mut self, arrived: bool) {
         let Range { start, end } = self.samples;
         if start < end {
-            self.levels = self.efforts.levels(start, &self.run, arrived.as_ref());
+            let arrived = if arrived { Some(&self.there) } else { None };
+            self.efforts.levels(start, &self.run, arrived, &mut self.levels);
             let effort = self.here(start).re();
             let speed = self.run.velocity.re();
             if self.part == 0 && !self.efforts.is_fine(speed, effort, self.levels) {
@@ -355,7 +362,8 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T, E>> PlainSteps<S, T> for Glide<S
             return effort;
         }
         let (sample, span) = (self.samples.start, self.verlet.span);
-        self.there = self.efforts.acting(sample, &self.run, displacement, shown(), span);
+        let moved = (displacement, shown());
+        self.efforts.acting(sample, &self.run, moved, span, &mut self.there);
         let then = self.there.driving + self.there.ambient;
         self.efforts_of_step = (effort, then);
         then
@@ -407,7 +415,7 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T, E>> PlainSteps<S, T> for Glide<S
         self.run.friction = here(samples.end - 1);
         (self.samples.start, self.part) = (samples.end, 0);
         if !E::HELD && samples.end < self.samples.end {
-            self.levels = self.efforts.levels(samples.end, &self.run, None);
+            self.efforts.levels(samples.end, &self.run, None, &mut self.levels);
         }
         Some(self.run.friction)
     }
@@ -436,7 +444,7 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T, E>> PlainSteps<S, T> for Glide<S
             self.end_sample(contact);
         }
         if !E::HELD {
-            self.go_on(Some(self.there));
+            self.go_on(true);
         }
         if E::HELD { velocity } else { self.run.velocity }
     }

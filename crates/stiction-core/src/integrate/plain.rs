@@ -1,5 +1,7 @@
 //! What a machine is in plain steps, and how it holds a body at rest.
 
+use stiction_dispatch::Task;
+
 use super::glide::{Acting, Stillness};
 use super::levels_are_fine;
 use crate::friction::FrictionLaw;
@@ -20,27 +22,48 @@ impl<S: Scalar> Machine<S> {
         Verlet::new(span, self.inertia, self.lightness)
     }
 
-    /// What acts on this machine and its contact where a step leads that is in a row; `driving` says the effort
+    /// Puts into its place what acts on this machine and its contact where a step leads that is in a row; `driving` says the effort
     /// of the drive and a load there, `load` that load; `pull` is what a second mass does.
     #[inline(always)]
     pub fn acting(
         &self,
-        at: &Situation<S>,
+        at: &mut Situation<S>,
         driving: impl FnOnce(&Situation<S>) -> S,
         load: impl FnOnce() -> S,
         pull: Option<S>,
-    ) -> Acting<S> {
-        let beside = self.surroundings(at);
-        let ambient = pull.map_or(beside, |pull| beside + pull);
-        let driving = driving(at);
-        if !self.effects.changes_levels() {
-            return Acting { driving, ..Acting::plain(ambient) };
+        there: &mut Acting<S>,
+    ) {
+        there.driving = driving(at);
+        if S::CARRIES {
+            return self.acting_apart(at, load(), pull.as_ref(), there);
         }
-        let at = self.at_contact(at, driving + ambient, load());
-        Acting { driving, ambient, levels: self.effects.levels(&at) }
+        let beside = self.surroundings(at);
+        there.ambient = pull.map_or(beside, |pull| beside + pull);
+        if self.effects.changes_levels() {
+            let at = self.at_contact(at, there.driving + there.ambient, load());
+            there.levels = self.effects.levels(&at);
+        }
     }
 
-    /// Levels of its contact where a run is, under the effort of the drive and a load, and that load; `arrived`
+    /// The same once for all laws.
+    #[inline(never)]
+    fn acting_apart(
+        &self,
+        at: &mut Situation<S>,
+        load: S,
+        pull: Option<&S>,
+        there: &mut Acting<S>,
+    ) {
+        S::run(ActingThere { machine: self, at, load: &load, pull, there });
+    }
+
+    /// Levels of its contact where a run is, likewise.
+    #[inline(never)]
+    fn levels_apart(&self, run: &Run<S>, acting: [&S; 2], levels: &mut (S, S)) {
+        S::run(LevelsOf { machine: self, run, acting, levels });
+    }
+
+    /// Puts into their place the levels of its contact where a run is, under the effort of the drive and a load, and that load; `arrived`
     /// is what was said of the place before the velocity was known.
     #[inline(always)]
     pub fn levels_of(
@@ -48,14 +71,20 @@ impl<S: Scalar> Machine<S> {
         run: &Run<S>,
         acting: impl FnOnce() -> (S, S),
         arrived: Option<&Acting<S>>,
-    ) -> (S, S) {
+        levels: &mut (S, S),
+    ) {
         match arrived {
-            _ if !self.effects.changes_levels() => Acting::plain(run.ambient).levels,
-            Some(arrived) if !self.effects.asks_speed() && !self.effects.remembers() => arrived.levels,
+            _ if !self.effects.changes_levels() => (),
+            Some(arrived) if !self.effects.asks_speed() && !self.effects.remembers() => {
+                *levels = arrived.levels;
+            }
             _ => {
                 let (effort, load) = acting();
+                if S::CARRIES {
+                    return self.levels_apart(run, [&effort, &load], levels);
+                }
                 let at = self.at_contact(&run.situation(), effort + run.ambient, load);
-                self.effects.levels(&at)
+                *levels = self.effects.levels(&at);
             }
         }
     }
@@ -90,6 +119,49 @@ impl<S: Scalar> Machine<S> {
         } else {
             Stillness::Whole
         }
+    }
+}
+
+/// What acts where a step leads, as a task: rows of derivatives want the widest vectors.
+struct ActingThere<'a, S: Scalar> {
+    machine: &'a Machine<S>,
+    at: &'a mut Situation<S>,
+    load: &'a S,
+    pull: Option<&'a S>,
+    there: &'a mut Acting<S>,
+}
+
+impl<S: Scalar> Task for ActingThere<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { machine, at, load, pull, there } = self;
+        there.ambient = machine.added_there(at);
+        if let Some(pull) = pull {
+            there.ambient += *pull;
+        }
+        if machine.effects.changes_levels() {
+            there.levels = machine.levels_there(at, there.driving + there.ambient, *load);
+        }
+    }
+}
+
+/// Levels where a run is, likewise.
+struct LevelsOf<'a, S: Scalar> {
+    machine: &'a Machine<S>,
+    run: &'a Run<S>,
+    acting: [&'a S; 2],
+    levels: &'a mut (S, S),
+}
+
+impl<S: Scalar> Task for LevelsOf<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { machine, run, acting: [effort, load], levels } = self;
+        *levels = machine.levels_there(&mut run.situation(), *effort + run.ambient, *load);
     }
 }
 

@@ -29,7 +29,7 @@ impl<S: Scalar> Body<S> {
     }
 
     /// Effort of gravity, positive along +x.
-    #[inline]
+    #[inline(always)]
     pub fn gravity(&self, position: S) -> S {
         let weight = self.level_gravity();
         if self.gravity {

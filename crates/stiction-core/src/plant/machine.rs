@@ -1,5 +1,7 @@
 //! Everything of a plant but its friction law.
 
+use stiction_dispatch::Task;
+
 use super::body::Body;
 use super::budget::Budget;
 use super::drive::Drive;
@@ -209,6 +211,27 @@ impl<S: Scalar> Machine<S> {
         gravity + self.effects.effort(&Situation { sliding: self.sliding, ..*at })
     }
 
+    /// The same as part of whoever asks for it, in a situation that is told what it lacks.
+    #[inline(always)]
+    pub(crate) fn added_there(&self, at: &mut Situation<S>) -> S {
+        let gravity = self.body.gravity(at.position);
+        if !self.effects.adds_efforts() {
+            return gravity + 0.0;
+        }
+        at.sliding = self.sliding;
+        gravity + self.effects.effort_within(at)
+    }
+
+    /// Levels of the contact under all effort but friction, of which the load is a part, likewise.
+    #[inline(always)]
+    pub(crate) fn levels_there(&self, at: &mut Situation<S>, effort: S, load: S) -> (S, S) {
+        let load = load + self.body.gravity(at.position);
+        at.load = at.carried(load);
+        at.motor = effort - load;
+        at.sliding = self.sliding;
+        self.effects.levels_within(at)
+    }
+
     /// What the drive is commanded: the input, or the voltage that a servo makes of its goal.
     #[inline]
     pub fn command(&self, input: S, at: &Situation<S>) -> S {
@@ -274,10 +297,16 @@ impl<S: Scalar> Machine<S> {
     /// Effort of the drive.
     #[inline]
     pub(crate) fn driven(&self, input: S, at: &Situation<S>) -> S {
+        self.driven_within(input, at)
+    }
+
+    /// The same as part of whoever asks for it.
+    #[inline(always)]
+    fn driven_within(&self, input: S, at: &Situation<S>) -> S {
         if !at.enabled {
             return S::constant(0.0);
         }
-        self.drive.effort(self.effects.input(self.command(input, at), at), at.velocity)
+        self.drive.effort(self.effects.input_within(self.command(input, at), at), at.velocity)
     }
 
     /// Speed that a run comes to within a step under this input and load, where effects damp it.
@@ -416,7 +445,12 @@ impl<S: Scalar> Machine<S> {
     /// The same as a call: what all effects need is not compiled into every loop.
     #[inline(never)]
     pub(crate) fn driven_there(&self, input: S, at: &Situation<S>) -> S {
-        self.driven(input, at)
+        if !S::CARRIES {
+            return self.driven(input, at);
+        }
+        let mut driven = S::constant(0.0);
+        S::run(DrivenThere { machine: self, input: &input, at, driven: &mut driven });
+        driven
     }
 
     /// Lets effects remember the sample that a run went through, from where it stood before.
@@ -431,6 +465,23 @@ impl<S: Scalar> Machine<S> {
             self.effects.remember(&passage);
             run.moved = S::constant(0.0);
         }
+    }
+}
+
+/// Effort of the drive, as a task: rows of derivatives want the widest vectors.
+struct DrivenThere<'a, S: Scalar> {
+    machine: &'a Machine<S>,
+    input: &'a S,
+    at: &'a Situation<S>,
+    driven: &'a mut S,
+}
+
+impl<S: Scalar> Task for DrivenThere<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        *self.driven = self.machine.driven_within(*self.input, self.at);
     }
 }
 

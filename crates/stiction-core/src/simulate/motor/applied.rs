@@ -162,25 +162,30 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         &mut self,
         sample: usize,
         run: &Run<S>,
-        displacement: S,
-        velocity: S,
+        (displacement, velocity): (S, S),
         span: S,
-    ) -> Acting<S> {
-        let at = run.situation().after(displacement, velocity, span);
+        there: &mut Acting<S>,
+    ) {
+        let mut at = run.situation().after(displacement, velocity, span);
         let pull = if self.swings { Some(self.swing(run, &at, span)) } else { None };
         let driving = |at: &Situation<S>| {
             if self.by_place { self.driving_at(sample, at) } else { self.at(sample) }
         };
-        self.machine.acting(&at, driving, || self.load(sample), pull)
+        self.machine.acting(&mut at, driving, || self.load(sample), pull, there);
     }
 
     #[inline(always)]
-    fn levels(&self, sample: usize, run: &Run<S>, arrived: Option<&Acting<S>>) -> (S, S) {
-        if BARE {
-            return (S::constant(1.0), S::constant(1.0));
+    fn levels(
+        &self,
+        sample: usize,
+        run: &Run<S>,
+        arrived: Option<&Acting<S>>,
+        levels: &mut (S, S),
+    ) {
+        if !BARE {
+            let acting = || (self.driving(sample, run), self.load(sample));
+            self.machine.levels_of(run, acting, arrived, levels);
         }
-        let acting = || (self.driving(sample, run), self.load(sample));
-        self.machine.levels_of(run, acting, arrived)
     }
 
     #[inline(always)]
