@@ -213,7 +213,9 @@ pub struct Glide<S, E, V> {
     pub parts: u32,
     /// Levels at the start of the step that is looked at, where there are any.
     pub levels: (S, S),
-    /// All effort but friction then, and at its end, and what acts there, likewise.
+    /// All effort but friction then, where it is not the same all through a sample.
+    pub effort: S,
+    /// The same at the start of the step that was asked for last, and at its end.
     pub efforts_of_step: (S, S),
     /// What acts at the end of it.
     pub there: Acting<S>,
@@ -232,7 +234,25 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         let (efforts_of_step, there) = ((run.ambient, run.ambient), Acting::plain(run.ambient));
         let mut levels = there.levels;
         efforts.levels(samples.start, &run, None, &mut levels);
-        Self { verlet, run, efforts, seen, samples, part: 0, parts, levels, efforts_of_step, there }
+        let effort = run.ambient;
+        let (part, first) = (0, samples.start);
+        let mut glide = Self {
+            verlet,
+            run,
+            efforts,
+            seen,
+            samples,
+            part,
+            parts,
+            levels,
+            effort,
+            efforts_of_step,
+            there,
+        };
+        if !E::HELD {
+            glide.effort = glide.here(first);
+        }
+        glide
     }
 
     /// The last step of a sample has been made.
@@ -297,7 +317,8 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
         if start < end {
             let arrived = if arrived { Some(&self.there) } else { None };
             self.efforts.levels(start, &self.run, arrived, &mut self.levels);
-            let effort = self.here(start).re();
+            self.effort = self.here(start);
+            let effort = self.effort.re();
             let speed = self.run.velocity.re();
             if self.part == 0 && !self.efforts.is_fine(speed, effort, self.levels) {
                 self.samples.end = start;
@@ -343,7 +364,13 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T, E>> PlainSteps<S, T> for Glide<S
     fn next(&self) -> Option<S> {
         // No closure, which compilers may make a call of: derivatives would go through memory.
         let Range { start, end } = self.samples;
-        if start < end { Some(self.here(start)) } else { None }
+        if start >= end {
+            None
+        } else if E::HELD {
+            Some(self.here(start))
+        } else {
+            Some(self.effort)
+        }
     }
 
     #[inline(always)]
@@ -416,6 +443,7 @@ impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T, E>> PlainSteps<S, T> for Glide<S
         (self.samples.start, self.part) = (samples.end, 0);
         if !E::HELD && samples.end < self.samples.end {
             self.efforts.levels(samples.end, &self.run, None, &mut self.levels);
+            self.effort = self.here(samples.end);
         }
         Some(self.run.friction)
     }

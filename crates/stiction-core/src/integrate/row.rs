@@ -214,6 +214,7 @@ fn go<L: FrictionLaw<f64>>(
         part: 0,
         parts: 1,
         levels: (1.0, 1.0),
+        effort,
         efforts_of_step: (0.0, 0.0),
         there: Acting::plain(0.0),
     };

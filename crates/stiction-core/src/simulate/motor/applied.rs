@@ -34,6 +34,11 @@ impl<'a, S: Scalar> Notes<'a, S> {
         Self { any, takes, way, arrived: None, held: None, before, second }
     }
 
+    /// Whether there is anything to note.
+    pub(super) fn any(&self) -> bool {
+        self.any
+    }
+
     /// Whether inputs are on their way for long.
     pub(super) fn holds_up(&self) -> bool {
         self.way.is_some()
@@ -65,6 +70,8 @@ pub(super) struct Applied<'a, 'b, S: Scalar, A, const BARE: bool> {
     pub(super) ahead: &'a mut Ahead,
     /// What is noted of the samples, where anything is.
     pub(super) notes: &'a mut Notes<'b, S>,
+    /// Whether inputs are data and nothing takes note of samples or swings.
+    pub(super) plainly: bool,
     /// Whether the drive goes by place and speed.
     pub(super) by_place: bool,
     /// Whether a second mass swings.
@@ -154,7 +161,11 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn driving(&self, sample: usize, run: &Run<S>) -> S {
-        if self.by_place { self.driving_at(sample, &run.situation()) } else { self.at(sample) }
+        if self.plainly || !self.by_place {
+            self.at(sample)
+        } else {
+            self.driving_at(sample, &run.situation())
+        }
     }
 
     #[inline(always)]
@@ -167,6 +178,11 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         there: &mut Acting<S>,
     ) {
         let mut at = run.situation().after(displacement, velocity, span);
+        if self.plainly {
+            let driving = |_: &Situation<S>| self.at(sample);
+            self.machine.acting(&mut at, driving, || self.load(sample), None, there);
+            return;
+        }
         let pull = if self.swings { Some(self.swing(run, &at, span)) } else { None };
         let driving = |at: &Situation<S>| {
             if self.by_place { self.driving_at(sample, at) } else { self.at(sample) }
@@ -190,11 +206,11 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn settle(&mut self, sample: usize, run: &mut Run<S>, from: (S, S), mut efforts: (S, S)) {
-        if self.swings {
+        if !self.plainly && self.swings {
             (run.second_position, run.second_velocity) = self.notes.second;
         }
         if self.counts {
-            if self.by_place {
+            if !self.plainly && self.by_place {
                 // At the speed that it has got, not at the one that the step was shown.
                 efforts.1 = self.driving(sample, run) + run.ambient;
             }
@@ -216,7 +232,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn held(&mut self, run: &mut Run<S>, span: S) {
-        if self.swings || self.notes.takes {
+        if !self.plainly && (self.swings || self.notes.takes) {
             let at = run.situation();
             self.machine.swing(&at, &at, span, run);
             self.machine.refresh(run);
@@ -225,7 +241,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn ended(&mut self, sample: usize, run: &mut Run<S>) {
-        if !BARE && self.notes.any {
+        if !BARE && !self.plainly && self.notes.any {
             self.note(sample, run);
         }
     }

@@ -296,6 +296,7 @@ impl<S: Scalar> Running<S> {
         // How finely a sample goes hangs on its input before anything holds that up.
         let alone = !BARE && (!around.is_steady() || (strains && self.way.is_some()));
         let mut notes = Notes::new(&self.machine, self.way.as_mut(), &self.run);
+        let notes_any = notes.any();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
             let mut known = f64::NAN;
@@ -368,6 +369,7 @@ impl<S: Scalar> Running<S> {
                         added: &added,
                         ahead: &mut ahead,
                         notes: &mut notes,
+                        plainly: !by_place && !swings && !notes_any,
                         by_place,
                         swings,
                         dt: dt_now,
