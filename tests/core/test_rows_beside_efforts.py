@@ -1,5 +1,7 @@
 """Plain steps in a row where something acts beside drive and friction: the same as one by one."""
 
+import random
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,58 @@ def test_a_run_is_its_steps(law, beside):
         steps.append(one_by_one.state["position"])
     assert np.array_equal(run.position, steps)
     assert same_state(at_once.state, one_by_one.state)
+
+
+def drawn(name: str):
+    """A motor with effects that nobody chose, maybe a servo, and what acts on it."""
+    source = random.Random(name)
+    records = source.sample(st.effects(), source.choice([1, 1, 2, 3]))
+    effects = {}
+    for record in records:
+        values = {}
+        for each in record.parameters:
+            value = each.typical * 10.0 ** source.uniform(-0.5, 0.5)
+            turned = each.neutral is not None and source.random() < 0.3
+            values[each.name] = float(np.clip(-value if turned else value, *each.bounds))
+        effects[record.name] = values
+    law = source.choice(st.laws()).name
+    servo = source.random() < 0.25
+    inertia, dt = source.choice([1e-4, 0.0076, 0.1]), source.choice([1e-4, 1e-3, 4e-3])
+    noise = np.random.default_rng(source.randrange(10**9))
+    inputs = np.cumsum(noise.normal(size=300)) * (0.003 if servo else 0.02)
+    inputs *= source.choice([0.3, 1.0, 3.0])
+    inputs[50:120] = inputs[50]
+    around = {}
+    if source.random() < 0.2:
+        around["temperature"] = 20.0 + 0.1 * np.cumsum(noise.normal(size=300))
+    if source.random() < 0.2:
+        around["load"] = 0.05 * noise.normal(size=300)
+    if source.random() < 0.2:
+        around["enabled"] = noise.random(300) > 0.1
+
+    def build() -> st.Motor:
+        friction = st.FrictionModel(law)
+        if not servo:
+            return st.Motor(inertia, friction=friction, effects=effects)
+        loop = {"proportional": 20.0, "integral": 5.0, "supply": 12.0, "resistance": 2.0}
+        return st.Motor(inertia, 0.4, friction=friction, effects=effects, servo=loop)
+
+    return build, inputs, dt, around
+
+
+@pytest.mark.parametrize("part", range(8))
+def test_runs_of_any_motors_are_their_steps(part):
+    for number in range(25):
+        build, inputs, dt, around = drawn(f"{part} {number}")
+        at_once, one_by_one = build(), build()
+        run = at_once.simulate(inputs, dt, **around)
+        steps = []
+        for k, given in enumerate(inputs):
+            now = {name: values[k] for name, values in around.items()}
+            one_by_one.step(given, dt, **now)
+            steps.append(one_by_one.state["position"])
+        assert np.array_equal(run.position, steps), (part, number)
+        assert same_state(at_once.state, one_by_one.state), (part, number)
 
 
 @pytest.mark.parametrize("law", ["coulomb", "lugre", "maxwell_slip"])
