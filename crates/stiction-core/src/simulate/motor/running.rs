@@ -265,7 +265,7 @@ impl<S: Scalar> Running<S> {
         };
         let plain = self.has_rows(around);
         let cost = with_law!(&self.law, |law| if plain && law.glides() {
-            work::in_a_row::<S>() * law.glide_cost()
+            work::in_a_row::<S>() * (law.glide_cost() + self.cost_in_a_row())
         } else {
             self.of_step()
         });
@@ -277,6 +277,14 @@ impl<S: Scalar> Running<S> {
         let bare = self.machine.is_bare();
         let has = if bare { around.is_steady() } else { self.machine.has_rows() };
         has && self.integrator == Integrator::Fast
+    }
+
+    /// What a step in a row costs beside that of its law.
+    fn cost_in_a_row(&self) -> u64 {
+        if self.machine.is_bare() {
+            return 0;
+        }
+        self.machine.effects.cost_in_a_row() + u64::from(self.machine.drive.servo.is_some())
     }
 
     fn simulate_kind<const BARE: bool>(
@@ -295,10 +303,12 @@ impl<S: Scalar> Running<S> {
         let swings = !BARE && self.machine.shaft.is_some();
         // How finely a sample goes hangs on its input before anything holds that up.
         let alone = !BARE && (!around.is_steady() || (strains && self.way.is_some()));
+        let beside = self.cost_in_a_row();
         let mut notes = Notes::new(&self.machine, self.way.as_mut(), &self.run);
         let notes_any = notes.any();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
+            let each = law.glide_cost() + beside;
             let mut known = f64::NAN;
             let (mut plainly, mut divided, mut pieces) = (1.0, 1, 1);
             let (longest, integrator) = (self.longest, self.integrator);
@@ -403,7 +413,7 @@ impl<S: Scalar> Running<S> {
                     }
                     let steps = (index - begun) as u64 * u64::from(parts);
                     let begin = if alone { work::A_ROW } else { 0 };
-                    meter.take((begin + steps * law.glide_cost()) * work::in_a_row::<S>())?;
+                    meter.take((begin + steps * each) * work::in_a_row::<S>())?;
                     // Also what needs other steps from here on.
                     if index == end || (strains && index > begun && passed == 0) {
                         continue;

@@ -293,6 +293,16 @@ impl<S: Scalar> Effects<S> {
         self.inputs.is_empty() && !self.adds_efforts() && !self.changes_levels()
     }
 
+    /// What effects add to a step in a row, in steps of a bare body: of those that are asked where it is, of
+    /// memories with their exponentials, and of second masses.
+    pub fn cost_in_a_row(&self) -> u64 {
+        let asked = self.levels.len() + self.efforts.len() + self.inputs.len();
+        let late =
+            usize::from(self.delay.is_some() || self.slowness.is_some() || self.lag.is_some());
+        let remembering = self.remembering().count();
+        (asked + late + 3 * remembering + 4 * self.second_masses.len()) as u64
+    }
+
     /// Whether derivatives are wanted by the levels or by an added effort, see [`Self::seed`].
     pub fn is_seeded(&self) -> bool {
         let (friction, viscous, effort) = self.unit;
