@@ -140,6 +140,20 @@ def test_model_exchange_goes_as_the_core_does(law, fmpy, tmp_path):
         assert abs(np.mean(rests) - np.mean(velocity == 0.0)) < 2e-3
 
 
+@pytest.mark.parametrize("version", [0, 1])
+@pytest.mark.parametrize("law", ["coulomb", "rigid_perfectly_plastic"])
+def test_an_input_that_rises_slowly_breaks_away(law, version, fmpy, tmp_path):
+    # Its effort comes to what the contact holds just where the solver finds the event.
+    own = machine({"law": law, "coulomb": 0.5})
+    ramp = np.array([(0.0, 0.0), (1.0, 1.0)], dtype=[("time", float), ("input", float)])
+    found = fmpy.simulate_fmu(
+        str(own.export("fmu").save(tmp_path)[version]), fmi_type="ModelExchange", stop_time=1.0,
+        output_interval=1e-3, input=ramp, output=["position"], record_events=False,
+    )  # fmt: skip
+    moved = own.motor().simulate((np.arange(10_000) + 0.5) * 1e-4, 1e-4).position[-1]
+    assert found["position"][-1] == pytest.approx(moved, rel=0.01)
+
+
 def test_the_version_before_exchanges_as_well(fmpy, tmp_path):
     own = machine(STUCK)
     path = own.export("fmu").save(tmp_path)[1]
