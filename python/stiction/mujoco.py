@@ -29,12 +29,14 @@ SWEEPS: Final = 60
 SETTLED: Final = 1e-10
 """and share of the greatest friction by which it still changes when they are not any more."""
 NUDGES: Final = 4
+NO_AXIS: Final = "joint = '{}' is no hinge and no slide; friction of a plant has one axis"
 
 
 class Joint:
     """A joint of a model whose friction is that of a plant.
 
-    Made by ``attach``. One belongs to one ``MjData``; ``copy`` makes another for the next.
+    Made by ``attach``. One belongs to one ``MjData``; ``copy`` makes another for the next. Where
+    the time of that goes back (``mj_resetData``) and no state was set, the contact begins anew.
 
     Attributes
     ----------
@@ -50,7 +52,7 @@ class Joint:
     def __init__(self, model: Any, name: str, plant: Plant) -> None:
         self.name, self.friction = name, 0.0
         self._model = model
-        self._place, self._dof = _places(model, name)
+        self._number, self._place, self._dof = _places(model, name)
         kept = tuple(e for e in plant.effects if e.record.at_contact)
         self.lost = tuple(_sentences(plant, kept))
         moved = {"input": "torque_nm" if plant.motion == "rotary" else "force_n", "gain": 1.0}
@@ -58,6 +60,8 @@ class Joint:
         self._inertia = float("nan")
         self._motor: Motor | None = None
         self._begun: dict[str, Any] | None = None
+        # The data and the time of the last step; none where what comes next is another run.
+        self._last: tuple[int, float] | None = None
 
     @property
     def state(self) -> dict[str, Any]:
@@ -68,6 +72,7 @@ class Joint:
 
     @state.setter
     def state(self, value: dict[str, Any]) -> None:
+        self._last = None
         if self._motor is None:
             self._made(1.0).state = value
             self._begun = dict(value)
@@ -76,7 +81,7 @@ class Joint:
 
     def reset(self) -> None:
         """A contact that was never moved."""
-        self._motor = self._begun = None
+        self._motor = self._begun = self._last = None
         self._inertia, self.friction = float("nan"), 0.0
 
     def copy(self) -> Joint:
@@ -85,6 +90,19 @@ class Joint:
         other.lost, other.friction = self.lost, self.friction
         other._begun = dict(self.state)
         return other
+
+    def _begin(self, data: Any) -> None:
+        """A step of this data comes next: of no other than the last, unless something was set."""
+        if self._last is None:
+            return
+        own, time = self._last
+        if own != id(data):
+            raise InputError(
+                f"joint '{self.name}' has the state of another MjData; give this one a joint of "
+                "its own (joint.copy()), or begin anew (joint.reset())"
+            )
+        if data.time < time:
+            self.reset()
 
     def _made(self, inertia: float) -> Motor:
         body = {"inertia": Parameter(inertia, fixed=True)}
@@ -139,12 +157,14 @@ def attach(model: Any, joint: str, plant: Plant, *, armature: bool = True) -> Jo
     Raises
     ------
     InputError
-        No such joint, one that is no hinge or slide, an integrator of several stages; MuJoCo is
-        missing.
+        No such joint, one that is no hinge or slide, a plant that moves otherwise, an integrator
+        of several stages; MuJoCo is missing.
     """
     made = Joint(
         model, given.word(joint, "joint"), given.instance(plant, Plant, "plant", "a Plant")
     )
+    hinge = int(model.jnt_type[made._number]) == int(simulator().mjtJoint.mjJNT_HINGE)
+    _check_motion(joint, plant, hinge)
     dof = made._dof
     model.dof_damping[dof] = model.dof_frictionloss[dof] = 0.0
     for actuator in range(len(model.actuator_trntype)):
@@ -185,7 +205,8 @@ def patch(
     Raises
     ------
     InputError
-        No such joint; MuJoCo is missing.
+        No such joint, one that is no hinge or slide, a plant that moves otherwise; MuJoCo is
+        missing.
     """
     from .export.mjcf import STIFF, Mjcf
     from .export.speeds import greatest_speed
@@ -196,6 +217,10 @@ def patch(
     if own is None:
         names = ", ".join(each.name for each in spec.joints)
         raise InputError(f"joint = '{joint}' is not in the model; there are {names}")
+    hinge = own.type == mujoco.mjtJoint.mjJNT_HINGE
+    if not hinge and own.type != mujoco.mjtJoint.mjJNT_SLIDE:
+        raise InputError(NO_AXIS.format(joint))
+    _check_motion(joint, plant, hinge)
     made = Mjcf.of(plant, greatest_speed(plant, speed))
     own.armature, own.frictionloss = made.joint["armature"], made.joint["frictionloss"]
     own.solref_friction[:], own.solimp_friction[:3] = STIFF.values()
@@ -225,7 +250,7 @@ def _set(mujoco: Any, actuator: Any, tag: str, given_as: dict[str, Any]) -> None
         setattr(actuator, name, value)
 
 
-def step(model: Any, data: Any, joints: Sequence[Joint]) -> None:
+def step(model: Any, data: Any, joints: Sequence[Joint] | Joint) -> None:
     """Take one step of a simulation, as ``mujoco.mj_step`` does, with the friction of these joints.
 
     Each joint is a motor with the inertia that the rest of the robot leaves it, under all efforts
@@ -237,16 +262,19 @@ def step(model: Any, data: Any, joints: Sequence[Joint]) -> None:
     ----------
     model : mujoco.MjModel
     data : mujoco.MjData
-    joints : sequence of Joint
+    joints : sequence of Joint, or Joint
         Of ``attach``, each in the state that belongs to ``data``.
 
     Raises
     ------
     InputError
         As a motor refuses: a time step that is too long for the contact, efforts that are no
-        numbers.
+        numbers. A joint that went with another ``MjData``.
     """
     mujoco, span = simulator(), float(model.opt.timestep)
+    joints = [joints] if isinstance(joints, Joint) else joints
+    for joint in joints:
+        joint._begin(data)
     mujoco.mj_step1(model, data)
     mujoco.mj_fwdActuation(model, data)
     mujoco.mj_fwdAcceleration(model, data)
@@ -272,6 +300,7 @@ def step(model: Any, data: Any, joints: Sequence[Joint]) -> None:
         if missed <= AS_FOUND * change:
             data.qvel[joint._dof] = velocity
         joint._motor, joint.friction = motor, friction
+        joint._last = (id(data), float(data.time))
 
 
 def _together(
@@ -337,8 +366,8 @@ def _answer(mujoco: Any, model: Any, data: Any, dof: int) -> FloatArray:
     return own
 
 
-def _places(model: Any, name: str) -> tuple[int, int]:
-    """Where a joint stands in positions and in velocities."""
+def _places(model: Any, name: str) -> tuple[int, int, int]:
+    """Which joint it is, and where it stands in positions and in velocities."""
     mujoco = simulator()
     kind = mujoco.mjtJoint
     number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
@@ -346,15 +375,23 @@ def _places(model: Any, name: str) -> tuple[int, int]:
         names = [model.joint(k).name for k in range(model.njnt)]
         raise InputError(f"joint = '{name}' is not in the model; there are {', '.join(names)}")
     if int(model.jnt_type[number]) not in (int(kind.mjJNT_HINGE), int(kind.mjJNT_SLIDE)):
-        raise InputError(
-            f"joint = '{name}' is no hinge and no slide; friction of a plant has one axis"
-        )
+        raise InputError(NO_AXIS.format(name))
     if int(model.opt.integrator) == int(mujoco.mjtIntegrator.mjINT_RK4):
         raise InputError(
             "the model is integrated by RK4, in stages between which no contact can stick; "
             "set option.integrator to Euler or implicitfast"
         )
-    return int(model.jnt_qposadr[number]), int(model.jnt_dofadr[number])
+    return number, int(model.jnt_qposadr[number]), int(model.jnt_dofadr[number])
+
+
+def _check_motion(joint: str, plant: Plant, hinge: bool) -> None:
+    """Refuses a plant that turns on a joint that slides, and the other way round."""
+    if hinge != (plant.motion == "rotary"):
+        kind, moves = ("hinge", "linear") if hinge else ("slide", "rotary")
+        raise InputError(
+            f"joint = '{joint}' is a {kind}, and {plant.source} is {moves}: its numbers are in "
+            f"other units; give a joint that fits, or state motion.kind in the plant"
+        )
 
 
 def _sentences(plant: Plant, kept: Sequence[Effect]) -> list[str]:

@@ -9,7 +9,7 @@ import pytest
 import stiction as st
 
 mujoco = pytest.importorskip("mujoco")
-from stiction.mujoco import attach, step  # noqa: E402
+from stiction.mujoco import attach, patch, step  # noqa: E402
 
 DT = 1e-3
 ONE = """
@@ -218,3 +218,43 @@ def test_joints_that_cannot_be_are_refused():
     stiff = attach(one(dt=10.0), "j", plant("lugre"))
     with pytest.raises(st.InputError, match="too long"):
         driven(one(dt=10.0), stiff, [0.1])
+
+
+def test_data_that_is_reset_begins_with_a_contact_that_never_moved():
+    model = one()
+    joint, data = attach(model, "j", plant("dahl")), mujoco.MjData(model)
+    first = driven(model, joint, efforts(), data)
+    mujoco.mj_resetData(model, data)
+    assert np.array_equal(driven(model, joint, efforts(), data), first)
+
+
+def test_a_state_that_is_put_back_with_its_data_goes_on():
+    model = one()
+    joint, data = attach(model, "j", plant("dahl")), mujoco.MjData(model)
+    driven(model, joint, efforts()[:200], data)
+    kept, state = mujoco.MjData(model), joint.state
+    mujoco.mj_copyData(kept, model, data)
+    whole = driven(model, joint, efforts()[200:], data)
+    mujoco.mj_copyData(data, model, kept)
+    joint.state = state
+    assert np.array_equal(driven(model, joint, efforts()[200:], data), whole)
+
+
+def test_a_joint_of_other_data_is_refused():
+    model = one()
+    joint, own, other = attach(model, "j", plant()), mujoco.MjData(model), mujoco.MjData(model)
+    driven(model, joint, [0.5], own)
+    with pytest.raises(st.InputError, match=r"another MjData.*joint\.copy\(\)"):
+        driven(model, joint, [0.5], other)
+    step(model, other, joint.copy())
+
+
+@pytest.mark.parametrize("kind", ["slide", "ball"])
+def test_a_plant_that_turns_is_refused_by_what_does_not(kind):
+    xml = ONE.format(integrator="Euler", kind=kind, more="", dt=DT)
+    if kind == "ball":
+        xml = xml.replace('<actuator><motor joint="j"/></actuator>', "")
+    spec = mujoco.MjSpec.from_string(xml)
+    for call in (lambda: attach(spec.compile(), "j", plant()), lambda: patch(spec, "j", plant())):
+        with pytest.raises(st.InputError, match=r"is a slide, and .* is rotary|no hinge and no"):
+            call()
