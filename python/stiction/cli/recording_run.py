@@ -12,6 +12,7 @@ import numpy as np
 from .. import closed_loop
 from ..errors import InputError
 from ..plant import Plant
+from ..plant.assumed import assumptions
 from ..plant.begins import FILE, Begin, begin_of
 from ..plot import save_or_say
 from ..recording import Recording
@@ -121,6 +122,7 @@ def _one(
         "rows": len(recording),
         "duration_s": recording.duration,
         "notes": list(recording.notes),
+        "assumed": list(assumptions(plant, recording.units.get("input", ""))),
     }
     drawn = _Drawn(stem)
     if recording.position is not None:

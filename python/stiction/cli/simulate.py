@@ -91,5 +91,8 @@ def simulate(
 
 def _tell(results: list[dict[str, Any]], *, as_json: bool) -> None:
     """Prints the answers for some recordings."""
+    # Once for all recordings.
+    assumed = dict.fromkeys(sentence for result in results for sentence in result["assumed"])
     text = "\n\n".join(result.pop("text") for result in results)
+    text = "".join(f"{sentence}\n" for sentence in assumed) + text
     answer(text, results[0] if len(results) == 1 else results, as_json=as_json)

@@ -38,6 +38,8 @@ class Export:
         That it was made of.
     speed : float or None
         Greatest speed that it was made for, rad/s or m/s.
+    assumed : tuple of str
+        What nobody stated of the plant and was taken for granted, a sentence each.
     """
 
     target: str
@@ -47,6 +49,7 @@ class Export:
     numbers: Mapping[str, float] = field(default_factory=dict)
     plant: Plant | None = field(default=None, repr=False)
     speed: float | None = field(default=None, repr=False)
+    assumed: tuple[str, ...] = ()
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write the files.
@@ -116,11 +119,13 @@ class Export:
             "files": list(self.files),
             "held": list(self.held),
             "lost": list(self.lost),
+            "assumed": list(self.assumed),
             "numbers": dict(self.numbers),
         }
 
     def __str__(self) -> str:
         lines = [f"{self.target}: {', '.join(self.files)}"]
+        lines += [f"  taken for granted: {sentence}" for sentence in self.assumed]
         lines += [f"  holds: {sentence}" for sentence in self.held]
         lines += [f"  cannot hold: {sentence}" for sentence in self.lost]
         return "\n".join(lines)

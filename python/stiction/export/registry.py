@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from .._support.keys import choice
+from ..plant.assumed import assumptions
 from .made import Export
 from .speeds import greatest_speed
 from .targets import __name__ as _package
@@ -68,4 +69,4 @@ def export(plant: Plant, to: str, *, speed: float | None) -> Export:
     known = targets()
     at = greatest_speed(plant, speed)
     made = known[choice(to, tuple(known), f"{plant.source}: to")].write(plant, at)
-    return replace(made, plant=plant, speed=at)
+    return replace(made, plant=plant, speed=at, assumed=assumptions(plant))

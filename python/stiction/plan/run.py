@@ -15,6 +15,7 @@ from .._support.progress import phase
 from .._support.wording import commas, did_you_mean
 from ..errors import InputError
 from ..plant import Plant
+from ..plant.assumed import unstated_levels
 from ..plant.drive import GOALS
 from ..recording.recording import SPLIT_ROLES
 from .experiments import EXPERIMENTS, Experiment
@@ -25,8 +26,6 @@ from .result import Plan, Signal
 __all__ = ["plan"]
 
 RATES: Final = (50.0, 1e5)
-LEVELS: Final = ("coulomb", "breakaway")
-"""Parameters that say how large friction is."""
 SMALLER: Final = 0.75
 TRIES: Final = 16
 """Shares by which a signal is made smaller until it stays within the limits."""
@@ -135,9 +134,8 @@ def plan(
 
 def _guessed(plant: Plant) -> list[str]:
     """What the plant does not say of the sizes that signals are made by."""
-    levels = [p.name for p in plant.friction.record.parameters if p.name in LEVELS]
-    silent = [name for name in levels if name not in plant.friction.parameters]
-    if len(silent) < len(levels) or not levels:
+    silent = unstated_levels(plant)
+    if not silent:
         return []
     return [
         f"{plant.source} states no level of friction: signals are sized by the catalogue's "

@@ -22,6 +22,7 @@ __all__ = [
     "body_losses",
     "head_of",
     "joint_of",
+    "loop_losses",
     "losses_of",
     "sidecar",
     "speeds_up_to",
@@ -175,6 +176,18 @@ def body_losses(plant: Plant, *, armature: bool = False) -> tuple[str, ...]:
         share = f"{carried:.3g} {inertia} of the payload" if carried else "what of it is the body's"
         told.append(f"armature beside a body that has its mass: take off {share}")
     return tuple(told)
+
+
+def loop_losses(plant: Plant) -> tuple[str, ...]:
+    """What of a servo a joint without a drive has not, a sentence each."""
+    if not plant.servo:
+        return ()
+    unit = f"{plant.effort_unit}·s/{plant.position_unit}"
+    damping = plant.gain**2 / float(plant.drive["resistance_ohm"])
+    return (
+        "the position loop of the servo: give the joint a controller",
+        f"damping of {damping:.3g} {unit} by the motor's own voltage: add it to the controller's",
+    )
 
 
 def _changes(plant: Plant, effect: Effect, *, directed: bool) -> bool:

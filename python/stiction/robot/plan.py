@@ -17,7 +17,8 @@ from .._support.wording import commas, did_you_mean
 from ..errors import InputError
 from ..plan.experiments import EXPERIMENTS, Experiment
 from ..plan.limits import SHARE_TO_ACCELERATE, Sizes
-from ..plan.run import LEVELS, SMALLER, TRIES
+from ..plan.run import SMALLER, TRIES
+from ..plant.assumed import LEVELS
 from ..plant.presliding import presliding
 from ..recording.recording import SPLIT_ROLES
 from .excitation import ArmLoad, Excitation, excitation

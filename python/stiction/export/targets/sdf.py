@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
 
-from ...plant.joint import body_losses, joint_of, losses_of, sidecar
+from ...plant.joint import body_losses, joint_of, loop_losses, losses_of, sidecar
 from ..made import Export
 from ..runs import EffortRun, dry_friction
 
@@ -22,6 +22,7 @@ def write(plant: Plant, speed: float) -> Export:
         *losses_of(plant, joint),
         "inertia of the rotor: an axis of SDFormat has none",
         *body_losses(plant),
+        *loop_losses(plant),
     )
     kind = "revolute" if plant.motion == "rotary" else "prismatic"
     text = (
