@@ -52,6 +52,15 @@ def findings(folder: Path) -> dict[str, Any]:
     return told
 
 
+def test_what_a_draft_left_open_is_said_with_the_answer(tmp_path: Path) -> None:
+    session = HIDDEN.lay_out(tmp_path, seconds=1.0)
+    assert load_session(session).assumed == ()
+    robot = session.with_name("robot.toml")
+    robot.write_text("# TO DO: state the gain.\n" + robot.read_text())
+    (told,) = load_session(session).assumed
+    assert f"{robot}: 1 line of the draft still says TO DO (1)" in told
+
+
 def test_the_effect_is_named_in_its_joint_and_nowhere_else(findings: dict[str, Any]) -> None:
     named = {(cause["joint"], cause["name"]) for cause in findings["effects"] if cause["decided"]}
     assert named == {("elbow", "viscous_quadratic")}
@@ -72,6 +81,7 @@ def test_findings_keep_the_keys_of_schema_1(findings: dict[str, Any]) -> None:
     kept = ("verdict", "sentence", "effects", "gain", "candidates", "laws", "baseline", "extended")
     assert set(kept) < set(findings)
     assert {"unexplained", "advice", "data", "version", "seed", "seconds"} < set(findings)
+    assert findings["assumed"] == []
 
 
 def test_recordings_agree_where_nothing_differs(findings: dict[str, Any]) -> None:

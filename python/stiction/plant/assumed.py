@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from .._support.wording import commas
+from .._support.wording import commas, plural
 from .drive import assumed_gain
 
 if TYPE_CHECKING:
     from .plant import Plant
 
-__all__ = ["LEVELS", "assumptions", "unstated_levels"]
+__all__ = ["LEVELS", "assumptions", "left_to_do", "unstated_levels"]
 
+TO_DO: Final = "TO DO"
+"""By which a draft marks what nobody knew."""
 LEVELS: Final = ("coulomb", "breakaway")
 """Parameters of laws that say how much friction there is."""
 
@@ -42,3 +45,17 @@ def assumptions(plant: Plant, input_unit: str = "") -> tuple[str, ...]:
             "until you state one"
         )
     return tuple(sentence for sentence in told if sentence)
+
+
+def left_to_do(path: Path) -> str:
+    """That a file still has marks of its draft, "" where it has none."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    marked = [str(k) for k, line in enumerate(lines, 1) if line.startswith("#") and TO_DO in line]
+    if not marked:
+        return ""
+    say = "says" if len(marked) == 1 else "say"
+    return (
+        f"{path}: {plural(len(marked), 'line')} of the draft still {say} {TO_DO} "
+        f"({commas(marked)}): what stands there is a guess, and so is what follows from it; state "
+        "it and take the mark away"
+    )

@@ -154,6 +154,7 @@ class RobotDiagnosis:
             "joints": [joint.to_dict() for joint in self.joints],
             "links": self._links(),
             "agreement": [row.to_dict() for row in self.agreement],
+            "assumed": list(self.fit.session.assumed),
             "version": self.version,
             "seed": self.seed,
             "seconds": self.seconds,
@@ -222,7 +223,8 @@ class RobotDiagnosis:
         return write(self, given.path(folder, "RobotDiagnosis.save"))
 
     def __str__(self) -> str:
-        lines = [self.sentence, ""]
+        assumed = self.fit.session.assumed
+        lines = [self.sentence, "", *assumed, *([""] if assumed else [])]
         width = max((len(joint.name) for joint in self.joints), default=0)
         lines += [f"{joint.name:<{width}}  {_told(joint)}" for joint in self.joints]
         apart = [row for row in self.agreement if row.agrees is False]

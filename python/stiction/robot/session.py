@@ -14,6 +14,7 @@ from .._support.keys import check_keys
 from .._support.progress import phase, steps
 from .._support.wording import plural
 from ..errors import InputError
+from ..plant.assumed import left_to_do
 from ..plant.plant_file import read_toml, section
 from ..recording import Columns, Recording, Table, read_table
 from ..recording.names import names_of
@@ -73,11 +74,14 @@ class RobotSession:
     runs : tuple of Run
     left_out : tuple of str
         Files that were found and could not be read, a sentence each.
+    assumed : tuple of str
+        What nobody has stated and was taken for granted, a sentence each.
     """
 
     robot: Robot
     runs: tuple[Run, ...]
     left_out: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         where = "robot session: robot"
@@ -173,7 +177,8 @@ def load_session(path: str | Path) -> RobotSession:
             (left_out if entry.found else faults).append(str(error))
     if faults or not runs:
         raise InputError(_together(str(path), faults or left_out))
-    return RobotSession(robot, tuple(runs), tuple(left_out))
+    assumed = filter(None, (left_to_do(each) for each in (file, path)))
+    return RobotSession(robot, tuple(runs), tuple(left_out), tuple(assumed))
 
 
 def _run(robot: Robot, entry: Entry, shared: dict[str, Any], where: str) -> Run:
