@@ -59,8 +59,8 @@ def simulate(
     ------
     InputError
         An unknown parameter or start value, a plant that is no motor; JAX is missing, or counts in
-        single precision. Inside a compiled function refusals come as errors of JAX that hold the
-        sentence, such as values out of bounds.
+        single precision; values out of bounds. Inside a compiled function the last come as errors
+        of JAX that hold the sentence.
 
     Notes
     -----
@@ -80,9 +80,12 @@ def simulate(
             f"simulate: current and load have shapes {inputs.shape} and {loads.shape}; give (n,) "
             "each, and go over batches with jax.vmap"
         )
-    position, velocity = _differentiable(jax, simulation)(
-        vector.reshape(len(numbers)), inputs, loads
-    )
+    try:
+        position, velocity = jax.block_until_ready(
+            _differentiable(jax, simulation)(vector.reshape(len(numbers)), inputs, loads)
+        )
+    except jax.errors.JaxRuntimeError as error:
+        raise _refusal(error) from None
     return position, velocity
 
 
@@ -127,6 +130,12 @@ def _given(jax: Any, weight: Any, like: Any) -> Any:
     """Weights of an output, zeros where nobody asks for it."""
     symbolic = jax.custom_derivatives.SymbolicZero
     return jax.numpy.zeros_like(like) if isinstance(weight, symbolic) else weight
+
+
+def _refusal(error: Exception) -> Exception:
+    """The sentence of a refusal, which JAX wraps in two stacks of calls; else the error."""
+    _, found, sentence = str(error).rpartition(f"{InputError.__name__}: ")
+    return InputError(sentence.strip().splitlines()[0]) if found else error
 
 
 def _jax() -> Any:

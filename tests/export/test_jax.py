@@ -269,6 +269,11 @@ def test_refusals_are_sentences():
         simulate(machine("coulomb"), {}, current(), DT, start={"force": 0.1})
     with pytest.raises(st.InputError, match=r"give \(n,\) each"):
         simulate(machine("coulomb"), {}, np.zeros((2, 3)), DT)
+    for number in (-0.1, np.nan):
+        with pytest.raises(st.InputError, match=r"^coulomb = .* is out of bounds|not a .*number"):
+            simulate(machine("coulomb"), {"friction.coulomb": number}, current(), DT)
+    with pytest.raises(st.InputError, match=r"^coulomb = -0.1 is out of bounds"):
+        jax.grad(lambda v: squares("coulomb", v, current()))({"friction.coulomb": -0.1})
     jax.config.update("jax_enable_x64", False)
     try:
         with pytest.raises(st.InputError, match="single precision"):
