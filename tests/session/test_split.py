@@ -12,6 +12,7 @@ import pytest
 
 import stiction as st
 from stiction.recording import Part, Recording, Split
+from stiction.recording.blocks import blocks
 
 
 def recorded(seconds: float = 6.0, seed: int = 0, **labels: object) -> Recording:
@@ -196,6 +197,12 @@ def test_a_block_that_falls_into_a_gap_is_refused() -> None:
     holey = st.Session([Recording(time, *noise)])
     with pytest.raises(st.InputError, match=r"no rows from .* split the file at the gap"):
         holey.split()
+
+
+def test_milliseconds_taken_for_seconds_are_no_gap():
+    time = 2.0 * np.arange(1000)
+    with pytest.raises(st.InputError, match=r"a row every 2 s, too few .* the unit of its time"):
+        blocks(0, time, "r", 2.0, 0.1)
 
 
 def test_a_session_without_recordings_cannot_be_split() -> None:

@@ -6,6 +6,7 @@ import difflib
 import re
 import unicodedata
 from collections.abc import Iterable, Sequence
+from pathlib import PurePath
 
 # Below this similarity a suggestion misleads more often than it helps.
 _ALIKE = 0.55
@@ -87,6 +88,16 @@ def nearest(word: object, words: Iterable[str]) -> str | None:
         # "bias" is a word of torque_bias alone.
         hits = [each for each in by_fold if folded in each.split("_")]
     return by_fold[hits[0]] if len(hits) == 1 else None
+
+
+def nearest_file(name: str, names: Iterable[str]) -> str | None:
+    """The file whose name is near, whatever it ends in: of files that end alike all are near."""
+    ending = PurePath(name).suffix
+    by_stem: dict[str, str] = {}
+    for each in sorted(names, key=lambda each: PurePath(each).suffix != ending):
+        by_stem.setdefault(PurePath(each).stem, each)
+    near = nearest(PurePath(name).stem, by_stem)
+    return None if near is None else by_stem[near]
 
 
 def did_you_mean(word: object, words: Iterable[str]) -> str:

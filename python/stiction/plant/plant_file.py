@@ -14,7 +14,7 @@ from .._support.file_kinds import kind_of, kind_of_table
 from .._support.given import number, regular
 from .._support.keys import check_keys, choice
 from .._support.units import Motion
-from .._support.wording import commas, did_you_mean
+from .._support.wording import commas, nearest_file
 from ..errors import InputError
 from .drive import INPUT_KEYS, read_drive
 from .parameter import Parameter
@@ -126,7 +126,8 @@ def _near(path: Path) -> str:
         return ""
     # An ending that was left out may be that of a recording too.
     names = [each.name for each in files if each.suffix == ".toml" or each.stem == path.name]
-    return did_you_mean(path.name, names)
+    near = nearest_file(path.name, names)
+    return f" (did you mean '{near}'?)" if near else ""
 
 
 _LINE: Final = re.compile(r"at line (\d+)")

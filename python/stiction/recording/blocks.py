@@ -89,7 +89,8 @@ def blocks(
     InputError
         A recording shorter than three blocks, or one with so wide a gap that a block is empty.
     """
-    span = float(time[-1] - time[0]) + float(np.median(np.diff(time)))
+    step = float(np.median(np.diff(time)))
+    span = float(time[-1] - time[0]) + step
     number = math.floor(span / block_s + 1e-6)  # the last step of a clock is rounded too
     if span >= (1.0 - SHORT_SHARE) * FEWEST_BLOCKS * block_s:
         number = max(number, FEWEST_BLOCKS)
@@ -107,6 +108,12 @@ def blocks(
         high = time[0] + (block + 1) * length - (edge_s if block < number - 1 else 0.0)
         start, stop = (int(row) for row in np.searchsorted(time, (low, high)))
         stop = len(time) if block == number - 1 else stop
+        if stop - start < 2 and 2.0 * step > high - low:
+            raise InputError(
+                f"session: {name} has a row every {step:.3g} s, too few for blocks of "
+                f"{length:.3g} s to train and to judge on; check the unit of its time, and state it "
+                'where it is not s, as in --columns "time=NAME [ms]" or under [columns]'
+            )
         if stop - start < 2:
             raise InputError(
                 f"session: {name} has no rows from {low - time[0]:.3g} s to {high - time[0]:.3g} s "

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..._support.given import path as file_path
 from ..._support.given import regular
-from ..._support.wording import nearest
+from ..._support.wording import nearest_file
 from ...errors import InputError
 from ..row_count import complete
 from ..stamps import one_clock
@@ -107,7 +107,7 @@ def _near_by(file: Path) -> str:
     if not folder.is_dir():
         return f", and no folder '{folder}'; check the path"
     try:
-        near = nearest(file.name, (entry.name for entry in folder.iterdir()))
+        near = nearest_file(file.name, (entry.name for entry in folder.iterdir()))
     except OSError:  # a folder that may not be listed
         near = None
     return f" (did you mean '{near}'?)" if near else "; check the path"
