@@ -68,14 +68,14 @@ def test_the_title_says_what_is_missing_and_what_becomes_of_the_error(tmp_path: 
     )
     counted = replace(found.effects[0], reliability=Reliability(76, 74, 74))
     assert heading(replace(one, effects=(counted,)), tmp_path).startswith(
-        "Missing: constant offset of the effort, 97\u00a0%. Held‑out error 0.98 → "
+        "Missing: constant offset of the effort, 97\u00a0% sure. Held‑out error 0.98 → "
     )
     pair = (counted, replace(fall, reliability=Reliability(400, 400, 400)))
-    assert "Stribeck friction, 97\u00a0% each. Held‑out" in heading(
+    assert "Stribeck friction, 97\u00a0% sure of each. Held‑out" in heading(
         replace(one, effects=pair), tmp_path
     )
     never_wrong = replace(fall, reliability=Reliability(400, 400, 400))
-    assert "friction, 99\u00a0%." in heading(replace(one, effects=(never_wrong,)), tmp_path)
+    assert "friction, 99\u00a0% sure." in heading(replace(one, effects=(never_wrong,)), tmp_path)
     untested = replace(before, heldout_relative=None, train_relative=0.123)
     assert "Error on the rows fitted 12.3 → " in heading(replace(one, baseline=untested), tmp_path)
 

@@ -78,8 +78,8 @@ def _probability(diagnosis: Diagnosis) -> str:
     least = min((each.probability for each in held if each is not None and each.told), default=None)
     if least is None or None in held:
         return ""
-    several = " each" if len(held) > 1 else ""
-    return f", {percent(min(least, MOST), 0)}{several}"
+    several = " of each" if len(held) > 1 else ""
+    return f", {percent(min(least, MOST), 0)} sure{several}"
 
 
 def _error(diagnosis: Diagnosis) -> str:
