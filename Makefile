@@ -79,8 +79,10 @@ lint: $(READY)
 rust-tests: $(READY)
 	cargo test --quiet --profile editable
 
-# Files go over the processor's cores, each whole, for its tests share what was made once.
-PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile
+# Files go over the processor's cores, each whole, for its tests share what was made once; not those of many tests
+# first, or the long ones, which have few, would be left to one core in the end.
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --quiet --numprocesses auto --maxprocesses 8 --dist loadfile \
+	--no-loadscope-reorder
 
 python-tests: $(READY)
 	$(PYTEST) -m 'not slow'

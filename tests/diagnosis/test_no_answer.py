@@ -206,6 +206,7 @@ def alone(*, bias: float, follows: bool) -> st.Diagnosis:
     return st.diagnose(lone, st.Recording(time, effort, position), surrogates=6)
 
 
+@pytest.mark.slow
 def test_a_plant_that_leaves_most_of_the_effort_has_no_causes() -> None:
     found = alone(bias=0.0, follows=False)
     assert found.verdict == "unexplained", found.sentence

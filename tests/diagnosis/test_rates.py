@@ -158,6 +158,7 @@ def test_the_number_of_threads_changes_nothing() -> None:
     assert one == two
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LEFT_OUT)
 def test_a_cause_that_the_library_lacks_is_not_called_by_another_class(name: str) -> None:
     diagnosis = found(name, without=(name,))
