@@ -93,3 +93,11 @@ def test_a_file_that_may_not_be_read_says_why(
         with pytest.raises(InputError, match=r"cannot be read \(Permission denied\)"):
             read_table(path)
     assert read_table(path).columns
+
+
+@pytest.mark.parametrize("content", [b'"', b'""', b'"\n"', b";", b","])
+def test_a_first_line_of_marks_alone_is_refused_in_a_sentence(tmp_path, content):
+    file = tmp_path / "log.csv"
+    file.write_bytes(content)
+    with pytest.raises(InputError, match=r"no column; write a line of names|has a header"):
+        read_table(file)

@@ -111,8 +111,8 @@ def blocks(
         if stop - start < 2 and 2.0 * step > high - low:
             raise InputError(
                 f"session: {name} has a row every {step:.3g} s, too few for blocks of "
-                f"{length:.3g} s to train and to judge on; check the unit of its time, and state it "
-                'where it is not s, as in --columns "time=NAME [ms]" or under [columns]'
+                f"{length:.3g} s to train and to judge on; check the unit of its time, and state "
+                'it where it is not s, as in --columns "time=NAME [ms]" or under [columns]'
             )
         if stop - start < 2:
             raise InputError(

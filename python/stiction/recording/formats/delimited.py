@@ -42,8 +42,13 @@ def rows_below(path: Path, head: Head, *, commas: bool) -> Table:
     Raises
     ------
     InputError
-        There are no rows, or one that has too many cells.
+        There are no columns, no rows, or one that has too many cells.
     """
+    if not head.names:
+        raise InputError(
+            f"{path}: the first line has no column; write a line of names, or of numbers, "
+            "separated by commas, semicolons, tabs or blanks"
+        )
     rows = _rows(path, head, commas=commas)
     if rows.mixed:
         rows = _rows(path, head, commas=False)

@@ -401,7 +401,10 @@ class _Guesser:
                     'and state [drive] kind = "servo" in plant.toml; stiction library holds plants '
                     "of servos"
                 )
-            self.missing["input"] = sentence + self._spoiled("drive")
+            spoiled = self._spoiled("drive")
+            if spoiled:
+                sentence = f"no column can be the input{spoiled}: mend that first, or name another"
+            self.missing["input"] = sentence
         return drive
 
     # The rest ----------------------------------------------------------------------------
