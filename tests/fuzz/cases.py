@@ -142,6 +142,8 @@ def file_lines(draw: Draw, kind: str) -> Program:
         return [f"p = {path}", "x = st.Plant.load(p)", "x.motor()", f"x.save({path})"]
     if kind == "params.json":
         return [f"p = {path}", "x = st.Plant.from_bam(p)", "look(x)"]
+    if kind == "fit.json":
+        return [f"p = {path}", "x = stiction.library.entry_of_fit(p)", "look(x)"]
     if kind == "session.toml":
         return [f"p = {path}", "x = st.load(p)", "look(x)"]
     if kind == "robot.toml":

@@ -307,6 +307,13 @@ def write_parameters(path: Path, seed: int) -> None:
     path.write_text(json.dumps({**BAM, **own}), encoding="utf-8")
 
 
+def write_fit(path: Path, seed: int) -> None:
+    """Numbers of a fit, its plant beside it."""
+    write_plant(path.with_name("plant.toml"), 0)
+    number = {"value": 0.2, "stderr": 0.01, "ci95": [0.18, 0.22], "unit": "N·m", "at_bound": ""}
+    path.write_text(json.dumps({"parameters": {"friction.breakaway": number}}), encoding="utf-8")
+
+
 URDF = """<robot name="one"><link name="a"/><link name="b"><inertial><mass value="1"/>
 <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
 <joint name="turn" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
@@ -356,6 +363,7 @@ WRITERS: dict[str, Writer] = {
     "plant.toml": write_plant,
     "session.toml": write_session,
     "params.json": write_parameters,
+    "fit.json": write_fit,
     "one.urdf": write_urdf,
     "robot.toml": write_robot,
     "robot-session.toml": write_robot_session,

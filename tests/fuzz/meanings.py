@@ -228,6 +228,7 @@ OF_TARGET: dict[str, Drawer] = {
         lambda d: "{}" if not d.odd() else d.text(("a",)),
     ),
     "library.entry.name": lambda d: d.text([each.name for each in entries()]),
+    "library.entry_of_fit.path": lambda d: d.file("fit.json"),
     "library.compare.entry": lambda d: "made('Entry')",
     "load.path": lambda d: d.file("session.toml"),
     "Recording.load.path": lambda d: d.file(".csv"),

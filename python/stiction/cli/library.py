@@ -42,7 +42,7 @@ def library(
     Parameters
     ----------
     name
-        Entry to show.
+        Entry to show, or the folder of a stiction fit: has this machine changed since?
     session
         Session file with recordings of your unit. Its plant, where it names one, says how yours is
         driven and what it carries; law and effects are those of the entry.
@@ -51,14 +51,15 @@ def library(
     json
         Print JSON.
     """
-    from ..library import entry
+    from ..library import entries, entry, entry_of_fit
 
     if name is None:
         if session is not None:
             raise InputError("stiction library: no entry is given; name one to compare with")
         _listed(out, as_json=json)
         return
-    found = entry(name)
+    own = name not in {each.name for each in entries()} and Path(name).exists()
+    found = entry_of_fit(Path(name)) if own else entry(name)
     if session is None:
         text = str(found)
         if out is not None:
@@ -107,7 +108,8 @@ def _compared(found: Entry, path: Path, out: Path | None, *, as_json: bool, quie
         # A session need not name a plant: that of the entry then says how it is driven.
         own = None if "plant" in read_toml(path) else found.plant
         recordings = sessions.load(path, plant=own)
-        where = folder(Path(f"{path.stem}-beside-{found.name}") if out is None else out)
+        beside = Path(found.name).name or "fit"
+        where = folder(Path(f"{path.stem}-beside-{beside}") if out is None else out)
         plant = recordings.plant or found.plant
         with answer_on_interrupt(), name_file_in_errors(path, recordings, plant):
             comparison = compare(found, recordings)

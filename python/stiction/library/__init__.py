@@ -7,5 +7,15 @@ from __future__ import annotations
 
 from .comparison import UnitComparison, UnitNumber, compare
 from .entry_file import Entry, EntryNumber, entries, entry
+from .own_fit import entry_of_fit
 
-__all__ = ["Entry", "EntryNumber", "UnitComparison", "UnitNumber", "compare", "entries", "entry"]
+__all__ = [
+    "Entry",
+    "EntryNumber",
+    "UnitComparison",
+    "UnitNumber",
+    "compare",
+    "entries",
+    "entry",
+    "entry_of_fit",
+]
