@@ -11,7 +11,7 @@ from .drive import assumed_gain
 if TYPE_CHECKING:
     from .plant import Plant
 
-__all__ = ["LEVELS", "assumptions", "left_to_do", "unstated_levels"]
+__all__ = ["LEVELS", "assumptions", "open_marks", "unstated_levels"]
 
 TO_DO: Final = "TO DO"
 """By which a draft marks what nobody knew."""
@@ -47,7 +47,7 @@ def assumptions(plant: Plant, input_unit: str = "") -> tuple[str, ...]:
     return tuple(sentence for sentence in told if sentence)
 
 
-def left_to_do(path: Path) -> str:
+def open_marks(path: Path) -> str:
     """That a file still has marks of its draft, "" where it has none."""
     lines = path.read_text(encoding="utf-8").splitlines()
     marked = [str(k) for k, line in enumerate(lines, 1) if line.startswith("#") and TO_DO in line]

@@ -125,6 +125,7 @@ def diagnose_robot(
         __version__,
         seed,
         time.perf_counter() - began,
+        fit.session.assumed,
     )
 
 

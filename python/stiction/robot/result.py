@@ -103,6 +103,8 @@ class RobotDiagnosis:
         Of the package.
     seed : int
     seconds : float
+    assumed : tuple of str
+        What nobody has stated and was taken for granted, a sentence each.
     """
 
     fit: RobotFit
@@ -112,6 +114,7 @@ class RobotDiagnosis:
     version: str = ""
     seed: int = 0
     seconds: float = field(default=0.0, compare=False)
+    assumed: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> Verdict:
@@ -154,7 +157,7 @@ class RobotDiagnosis:
             "joints": [joint.to_dict() for joint in self.joints],
             "links": self._links(),
             "agreement": [row.to_dict() for row in self.agreement],
-            "assumed": list(self.fit.session.assumed),
+            "assumed": list(self.assumed),
             "version": self.version,
             "seed": self.seed,
             "seconds": self.seconds,
@@ -223,8 +226,7 @@ class RobotDiagnosis:
         return write(self, given.path(folder, "RobotDiagnosis.save"))
 
     def __str__(self) -> str:
-        assumed = self.fit.session.assumed
-        lines = [self.sentence, "", *assumed, *([""] if assumed else [])]
+        lines = [self.sentence, "", *self.assumed, *([""] if self.assumed else [])]
         width = max((len(joint.name) for joint in self.joints), default=0)
         lines += [f"{joint.name:<{width}}  {_told(joint)}" for joint in self.joints]
         apart = [row for row in self.agreement if row.agrees is False]

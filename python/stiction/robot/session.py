@@ -14,7 +14,7 @@ from .._support.keys import check_keys
 from .._support.progress import phase, steps
 from .._support.wording import plural
 from ..errors import InputError
-from ..plant.assumed import left_to_do
+from ..plant.assumed import open_marks
 from ..plant.plant_file import read_toml, section
 from ..recording import Columns, Recording, Table, read_table
 from ..recording.names import names_of
@@ -177,7 +177,7 @@ def load_session(path: str | Path) -> RobotSession:
             (left_out if entry.found else faults).append(str(error))
     if faults or not runs:
         raise InputError(_together(str(path), faults or left_out))
-    assumed = filter(None, (left_to_do(each) for each in (file, path)))
+    assumed = filter(None, (open_marks(each) for each in (file, path)))
     return RobotSession(robot, tuple(runs), tuple(left_out), tuple(assumed))
 
 
