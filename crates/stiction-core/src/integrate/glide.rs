@@ -145,8 +145,8 @@ pub trait Efforts<S: Scalar> {
         _there: &mut Acting<S>,
     ) {
     }
-    /// Puts into their place the levels where a run is; `arrived` is what was said of its place before its velocity was known, if
-    /// anything was.
+    /// Puts into their place the levels where a run is; `arrived` is what was said of its place before its
+    /// velocity was known, if anything was.
     #[inline(always)]
     fn levels(
         &self,

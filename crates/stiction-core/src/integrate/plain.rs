@@ -22,8 +22,8 @@ impl<S: Scalar> Machine<S> {
         Verlet::new(span, self.inertia, self.lightness)
     }
 
-    /// Puts into its place what acts on this machine and its contact where a step leads that is in a row; `driving` says the effort
-    /// of the drive and a load there, `load` that load; `pull` is what a second mass does.
+    /// Puts into its place what acts on this machine and its contact where a step of a row leads; `driving`
+    /// says the effort of the drive and a load there, `load` that load; `pull` is what a second mass does.
     #[inline(always)]
     pub fn acting(
         &self,
@@ -63,8 +63,8 @@ impl<S: Scalar> Machine<S> {
         S::run(LevelsOf { machine: self, run, acting, levels });
     }
 
-    /// Puts into their place the levels of its contact where a run is, under the effort of the drive and a load, and that load; `arrived`
-    /// is what was said of the place before the velocity was known.
+    /// Puts into their place the levels of its contact where a run is, under the effort of the drive and a
+    /// load, and that load; `arrived` is what was said of the place before the velocity was known.
     #[inline(always)]
     pub fn levels_of(
         &self,

@@ -17,7 +17,7 @@
  * event. A solver finds the root of the indicator to rounding: on either side of it the effort is
  * then beyond what is held, and the contact slides. At the root itself it would stay, and nothing
  * would come to it again. */
-#define OVER_THE_EDGE R(1e-9)
+#define BREAKAWAY_MARGIN R(1e-9)
 typedef struct {
     real rate[STATES], friction, indicator[INDICATORS];
 } evaluation;
@@ -80,7 +80,7 @@ static evaluation evaluate(const stiction_machine *at, const real *y, real passe
         found.rate[0] = R(0);
         found.rate[1] = R(0);
         /* The last is for a contact that holds nothing. */
-        found.indicator[0] = resisted - r_fabs(effort) + resisted * OVER_THE_EDGE + R(1e-300);
+        found.indicator[0] = resisted - r_fabs(effort) + resisted * BREAKAWAY_MARGIN + R(1e-300);
         return found;
     }
     found.indicator[0] = (real)at->mode * y[1];
@@ -116,7 +116,7 @@ static int settle(stiction_machine *at, real *y, const acting *by)
         at->velocity = R(0);
         at->mode = 0;
         found = evaluate(at, y, R(0), by);
-        if (found.indicator[0] <= R(0.5) * OVER_THE_EDGE * r_fabs(found.friction)) {
+        if (found.indicator[0] <= R(0.5) * BREAKAWAY_MARGIN * r_fabs(found.friction)) {
             at->mode = found.friction > R(0) ? 1 : -1;
         }
     }

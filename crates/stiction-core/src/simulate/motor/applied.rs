@@ -125,7 +125,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE>
     }
 
     /// Takes note of a sample that has ended, and begins the next.
-    #[inline(never)] // of what notes nothing it would take the registers
+    #[inline(never)] // as a part of the loop it would take registers from rows that note nothing
     fn note(&mut self, sample: usize, run: &mut Run<S>) {
         let notes = &mut *self.notes;
         let arrived = notes.arrived.take();
