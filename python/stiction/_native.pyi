@@ -67,12 +67,11 @@ class CancelToken:
 @final
 class FrictionModel:
     @overload
-    def __new__(cls, law: str | LawRecord, /, **keywords: float | str) -> FrictionModel: ...
+    def __new__(cls, law: str | LawRecord, **keywords: float | str) -> FrictionModel: ...
     @overload
     def __new__(
         cls,
         law: str | LawRecord,
-        /,
         *,
         effects: dict[str, dict[str, float]] | None = None,
         **keywords: float | str,

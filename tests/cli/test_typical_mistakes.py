@@ -297,6 +297,14 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "an array for dt": (
         lambda: st.FrictionModel("lugre").simulate(np.ones(5), np.ones(5)), "dt is no number",
     ),
+    "stamps for dt": (
+        lambda: motor().simulate(np.ones(5), np.arange(5.0)),
+        "dt rises from 0 to 4, so these are stamps: give durations, as numpy.diff does",
+    ),
+    "a level by place": (
+        lambda: st.FrictionModel("coulomb", 0.3), "FrictionModel('coulomb', coulomb=0.3)",
+    ),
+    "no law": (lambda: st.FrictionModel(coulomb=0.3), "the law is missing; give its name first"),
     "a number for a law": (lambda: st.FrictionModel(3), "3 is no law; give a name"),
     "a name that is not there": (lambda: st.laws()["stribeck"], "there is no law 'stribeck'"),
     "speed for velocity": (

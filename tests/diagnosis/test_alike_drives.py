@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 from tests.blind.score import as_plant, as_session
+from tests.diagnosis.builders import DT, plant
 from tests.reference.session_reference import make_session
 
 import stiction as st
+from stiction.diagnosis.phrases import PARTLY
 
 SIZE = 0.012
 """rms of what is hidden as a share of F_c."""
@@ -71,6 +73,25 @@ def test_a_part_that_is_lost_of_large_inputs_is_a_torque_constant_that_falls(for
     assert (cause.name, cause.decided) == ("torque_constant_saturation", True)
     reason = row_of(found, "drive_saturation").reason
     assert "beyond a limit nothing gets through" in reason
+
+
+@pytest.mark.parametrize(("share", "sure"), [(1.0, True), (0.4, False)])
+def test_a_limit_that_surely_lets_a_part_through_is_left_open(share, sure):
+    """A gain that falls to a floor, which the catalogue has not, looks like such a limit."""
+    limited = plant(effects=[{"name": "drive_saturation", "share": share, "limit": 0.35}])
+    source = np.random.default_rng(5)
+    time = np.arange(2500) * DT
+    recordings = []
+    for role in ("train", "train", "select", "test"):
+        waves = [0.3 * np.sin(w * time + source.uniform(0.0, 6.0)) for w in (2.0, 5.3, 13.0)]
+        effort = np.sum(waves, axis=0)
+        moved = limited.motor().simulate(effort[:-1], DT).position
+        position = np.concatenate([[0.0], moved]) + 1e-5 * source.standard_normal(len(time))
+        recordings.append(st.Recording(time, effort, position, role=role))
+    found = st.diagnose(plant(body={}), recordings, surrogates=8, threads=1)
+    (cause,) = found.effects
+    assert (cause.name, cause.decided) == ("drive_saturation", sure)
+    assert cause.doubt == ("" if sure else PARTLY)
 
 
 def test_a_mass_that_is_dragged_along_is_no_friction_that_comes_late():

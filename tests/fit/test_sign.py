@@ -50,3 +50,12 @@ def test_a_diagnosis_says_that_the_sign_is_wrong() -> None:
 @pytest.mark.parametrize(("scale", "noise"), [(1.0, 0.0), (0.0, 1.0)])
 def test_what_is_right_or_no_input_at_all_is_not_turned_round(scale: float, noise: float) -> None:
     assert TOLD not in st.fit(plant(), recordings(scale, noise)).split
+
+
+def test_a_fit_of_what_it_cannot_describe_begins_with_that() -> None:
+    lost, right = (st.fit(plant(), recordings(*each)) for each in ((0.0, 1.0), (1.0, 0.0)))
+    assert str(lost).startswith("this plant does not describe the recordings")
+    assert lost.to_dict()["caution"] == lost.caution
+    assert lost.caution in lost._repr_html_()
+    assert right.caution == ""
+    assert str(right).startswith(right.message)

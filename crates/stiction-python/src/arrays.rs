@@ -8,6 +8,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
+use stiction_core::error::Shown;
 use stiction_core::finite::check;
 use stiction_core::motor::{PerSample, Surroundings};
 
@@ -166,7 +167,19 @@ impl<'py> Each<'py> {
                 duration(value.py(), name, *step)?;
             }
             Self::Array(steps) => {
-                for step in steps.as_slice()? {
+                let steps = steps.as_slice()?;
+                // Stamps begin anywhere, durations above 0: what rises from 0 or below is a clock.
+                if steps[0] <= 0.0 && steps.is_sorted_by(|one, next| one < next) && steps.len() > 1
+                {
+                    let told = format!(
+                        "{name} rises from {} to {}, so these are stamps: give durations, as \
+                         numpy.diff does, or one for all samples",
+                        Shown(steps[0]),
+                        Shown(steps[steps.len() - 1])
+                    );
+                    return Err(input_error(value.py(), told));
+                }
+                for step in steps {
                     duration(value.py(), name, *step)?;
                 }
             }

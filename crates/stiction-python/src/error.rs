@@ -7,10 +7,19 @@ use stiction_core::error::{Error, Shown};
 use stiction_core::finite::check;
 
 static INPUT_ERROR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+static CALL_ERROR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
 
 /// An `InputError` with this sentence.
 pub fn input_error(py: Python<'_>, sentence: impl Into<String>) -> PyErr {
     match INPUT_ERROR.import(py, "stiction.errors", "InputError") {
+        Ok(class) => PyErr::from_type(class.clone(), (sentence.into(),)),
+        Err(error) => error,
+    }
+}
+
+/// A `CallError` with this sentence: an `InputError` that is a `TypeError` too.
+pub fn call_error(py: Python<'_>, sentence: impl Into<String>) -> PyErr {
+    match CALL_ERROR.import(py, "stiction.errors", "CallError") {
         Ok(class) => PyErr::from_type(class.clone(), (sentence.into(),)),
         Err(error) => error,
     }

@@ -15,7 +15,7 @@ use stiction_core::model::{FrictionModel as Core, LawSpec};
 
 use crate::arguments::{Text, effects_of};
 use crate::arrays::{Each, samples};
-use crate::error::{FASTEST, IntoPython, duration, finite, input_error, velocity};
+use crate::error::{FASTEST, IntoPython, call_error, duration, finite, input_error, velocity};
 use crate::real::{real, real_or_none};
 use crate::shared::Shared;
 use crate::state::{from_dict, keywords, to_dict};
@@ -130,6 +130,24 @@ fn name_of(law: &Bound<'_, PyAny>) -> PyResult<String> {
     }
 }
 
+/// Refuses values without a name after the law.
+fn refuse_nameless(law: &str, values: &Bound<'_, PyTuple>) -> PyResult<()> {
+    if values.is_empty() {
+        return Ok(());
+    }
+    let py = values.py();
+    let value = values.get_item(0)?.repr()?;
+    let record = LawSpec::new(law, &[], &[]).or_input_error(py)?.record;
+    let names: Vec<&str> = record.parameters.iter().map(|parameter| parameter.name).collect();
+    let example = names.first().map_or_else(String::new, |name| format!(", {name}={value}"));
+    let told = format!(
+        "FrictionModel: {value} comes without a name; give parameters by name, as in \
+         FrictionModel('{law}'{example}) (those of {law}: {})",
+        names.join(", ")
+    );
+    Err(call_error(py, told))
+}
+
 /// A velocity of one contact: many at once are told where they belong.
 #[inline]
 fn one(value: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -174,14 +192,24 @@ fn channels(
 #[pymethods]
 impl FrictionModel {
     #[new]
-    #[pyo3(signature = (law, /, *, effects=None, **keywords))]
+    #[pyo3(
+        signature = (law=None, *nameless, effects=None, **keywords),
+        text_signature = "(law, *, effects=None, **keywords)"
+    )]
     fn new(
         py: Python<'_>,
-        law: &Bound<'_, PyAny>,
+        law: Option<&Bound<'_, PyAny>>,
+        nameless: &Bound<'_, PyTuple>,
         effects: Option<&Bound<'_, PyAny>>,
         keywords: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let Some(law) = law else {
+            let told = "FrictionModel: the law is missing; give its name first, as in \
+                        FrictionModel('coulomb', coulomb=0.3) (stiction.laws() has all)";
+            return Err(call_error(py, told));
+        };
         let law = name_of(law)?;
+        refuse_nameless(&law, nameless)?;
         let (numbers, words) = self::keywords(&law, keywords)?;
         let spec = LawSpec::new(&law, &numbers, &words).or_input_error(py)?;
         let effects = effects.map(effects_of).transpose()?.unwrap_or_default();

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +19,7 @@ from .progress import progress
 
 if TYPE_CHECKING:
     from ..fitting import FitResult
+    from ..plant import Plant
     from .drafts import Opened
 
 __all__ = ["fit"]
@@ -112,8 +114,18 @@ def _curve(path: Path, columns: str, law: str, out: Path | None, *, as_json: boo
     with print_on_failure(text, data, as_json=as_json), protect_writes(where):
         files = found.save(where)
     wrote = "\n".join(f"wrote {file}" for file in files)
-    answer(f"{text}\n\n{wrote}", data, as_json=as_json)
+    answer(f"{text}\n\n{wrote}\n{_after_curve(files[0], found.plant)}", data, as_json=as_json)
     return True
+
+
+def _after_curve(plant_file: Path, plant: Plant) -> str:
+    """What a friction curve alone is good for, and what a simulation of its machine takes."""
+    unit, drive = ("kg·m²", "torque_nm") if plant.motion == "rotary" else ("kg", "force_n")
+    return (
+        f"next: stiction export {shlex.quote(str(plant_file))} --to c writes this friction for a "
+        f"controller; to simulate the machine, state [body] inertia ({unit}) there and [drive] "
+        f"input = '{drive}' in place of kind = 'prescribed_motion'"
+    )
 
 
 def _told(at: Opened, result: FitResult, name: str, *, as_json: bool) -> None:

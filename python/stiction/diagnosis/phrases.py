@@ -16,6 +16,7 @@ __all__ = [
     "PARTLY",
     "THE_LAW",
     "UNCONFIRMED",
+    "UNDETERMINED",
     "UNREPEATED",
 ]
 
@@ -34,10 +35,15 @@ DOUBTFUL = (
 """Of a cause whose name is told, and whose numbers are not."""
 OUTWEIGHED = "what is left without a name is worth more than half of what it took"
 """Why a name may be none."""
-PARTLY = "it acts in a few seconds alone, and takes a part there of what is beyond the limit"
-"""Why a limit may be something else that came then."""
+PARTLY = (
+    "beyond a limit nothing gets through, and here a part surely does: a gain that falls, or what "
+    "came for a few seconds alone, looks like that"
+)
+"""Why a limit may be something else."""
 UNCONFIRMED = "it may make the held-out rows worse by as much as it makes them better"
 """Why a name that the rows that decide bear out may be none."""
+UNDETERMINED = "these data do not determine all of its numbers"
+"""Why what is told by its shape may have another one."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
 """Why what should repeat with position may be something else."""
 LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where it is the cause"

@@ -16,6 +16,7 @@ from .._support.frozen import ByPath, Frozen, freeze
 from .._support.json_text import json_of
 from ..plant import Plant
 from ..residual.compared import comparison_of
+from .sign import LEFT_WHERE_WRONG
 from .statistics import correlations
 from .waves import as_waves, shown_path, waves_of
 
@@ -145,6 +146,19 @@ class FitResult:
         return ByPath(waves_of(self.parameters, self.covariance))
 
     @property
+    def caution(self) -> str:
+        """What to look at first where the plant leaves most of the effort, "" where it does not."""
+        left = self.train_relative
+        if not LEFT_WHERE_WRONG < left < math.inf:
+            return ""
+        by = comparison_of(self.plant)
+        return (
+            f"this plant does not describe the recordings: {by.share(left)} is left, so its "
+            "numbers mean nothing yet; check columns, units, signs and clocks, and what the plant "
+            "file states or leaves out"
+        )
+
+    @property
     def remarks(self) -> tuple[str, ...]:
         """All that is to be known beside the numbers, in sentences."""
         return (*self.bounds_hit, *self.undetermined, *self.assumed)
@@ -184,6 +198,7 @@ class FitResult:
     def _headline(self) -> list[str]:
         by = comparison_of(self.plant)
         lines = [
+            *([self.caution] if self.caution else []),
             self.message,
             f"{by.error} where fitted: {by.share(self.train_relative, 3)} (relative 2-norm), "
             f"{self._size(self.train_rms)} rms{self._spread()}",
@@ -320,6 +335,7 @@ class FitResult:
             "split": self.split,
             "success": self.success,
             "message": self.message,
+            "caution": self.caution,
             "evaluations": self.evaluations,
             "nuisances": {
                 "timing_offset_s": self.timing_offset,

@@ -298,7 +298,8 @@ class Plant(metaclass=FromFile):
         if self.prescribed_motion:
             return 0.0
         raise InputError(
-            f"{self.source}: [body] inertia is missing; state it (kg·m² or kg) to simulate"
+            f"{self.source}: [body] inertia is missing; state it (kg·m² or kg), or [drive] kind = "
+            "'prescribed_motion' for its friction alone"
         )
 
     @property
@@ -594,7 +595,8 @@ class Plant(metaclass=FromFile):
         if self.prescribed_motion:
             raise InputError(
                 f"{self.source}: [drive] kind = 'prescribed_motion' has no input to simulate; "
-                "use Motor.follow or a drive with an input"
+                "state [body] inertia and, in its place, [drive] input = 'torque_nm', or use "
+                "Motor.follow"
             )
         motor = self.motor()
         motor.reset(position, velocity)

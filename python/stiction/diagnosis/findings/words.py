@@ -404,6 +404,19 @@ def _percent(share: float | None) -> str:
     return "" if share is None else f"{100 * share:.1f} %"
 
 
+def _base_words(diagnosis: Diagnosis) -> str:
+    """Numbers of body, drive and law as they are known beside the causes, "" without a fit.
+
+    Those of the causes stand beside their names.
+    """
+    model = diagnosis.extended or diagnosis.baseline
+    if model is None:
+        return ""
+    own = {path: p for path, p in model.parameters.items() if not path.startswith("effects.")}
+    told = [value_words(path.rsplit(".", 1)[-1], p) for path, p in own.items()]
+    return f"fitted: {', '.join(told)}" if told else ""
+
+
 def summary(diagnosis: Diagnosis) -> str:
     """What the command line prints: sentence, findings, candidates, next experiment."""
     lines = [diagnosis.sentence]
@@ -430,6 +443,8 @@ def summary(diagnosis: Diagnosis) -> str:
         lines.append(diagnosis.ceiling.words(bool(diagnosis.effects)))
     if looped := loop_words(diagnosis):
         lines.append(looped)
+    if numbers := _base_words(diagnosis):
+        lines += ["", numbers]
     if diagnosis.laws:
         lines.append("")
         for row in diagnosis.laws:

@@ -38,8 +38,6 @@ class Search:
         share that they explain of what is left there; likeliest first.
     spread : bool
         Whether the last round refused a limit that helps, for where or how unevenly it does so.
-    partly : frozenset of str
-        Limits that take a part alone, and were found where rows that decide were fitted as well.
     rests : list of (str, Model)
         Effects that may be what the form of a named one leaves, each with the model that has it.
     interrupted : bool
@@ -56,7 +54,6 @@ class Search:
     imitated: float = 0.0
     unseen: dict[str, float] = field(default_factory=dict)
     spread: bool = False
-    partly: frozenset[str] = frozenset()
     tried: list[Model] = field(default_factory=list)
     rests: list[tuple[str, Model]] = field(default_factory=list)
     interrupted: bool = False

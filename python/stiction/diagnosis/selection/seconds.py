@@ -10,7 +10,7 @@ from ..adequacy.bursts import bursts
 from ..data.evidence import Evidence
 from ..screening.model import Model
 from .decide import Trial
-from .ranges import SURELY, is_whole, surely_a_part
+from .ranges import SURELY, is_whole
 from .rounds import friction_of
 from .search import Search
 
@@ -74,21 +74,10 @@ def _is_known(trial: Trial, model: Model) -> bool:
 
 
 def with_rows_of(again: Search, before: Search) -> Search:
-    """The second look with what the first one said of all effects that only it has asked.
-
-    A limit that is named there and surely does not take everything is left open: of 100 sessions
-    with pushes and drags of a second three were told as one that takes a part.
-    """
+    """The second look with what the first one said of all effects that only it has asked."""
     asked = again.rows.keys()
     again.blind += [record for record in before.blind if record.name not in asked]
     again.rows = {**before.rows, **again.rows}
     if not again.choices:
         again.imitated = max(again.imitated, before.imitated)
-    known = {each.winner.name for each in before.choices}
-    final = again.models[-1]
-    again.partly = frozenset(
-        each.winner.name
-        for each in again.choices
-        if each.winner.name not in known and surely_a_part(each.winner.candidate, final)
-    )
     return again
