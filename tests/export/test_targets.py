@@ -228,6 +228,8 @@ def test_the_command_writes_and_tells(tmp_path, capsys):
     assert "cannot hold: cogging" in capsys.readouterr().out
     assert (tmp_path / "out" / "urdf" / "joint.urdf").is_file()
     assert (tmp_path / "out" / "c" / "stiction_feedforward.c").is_file()
+    assert run(["export", file, "--to", "urdf", "-o", out]) == 0
+    assert "(in place of what was there: joint.urdf" in capsys.readouterr().out
     assert run(["export", file, "--to", "table", "-o", out, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)[0]["target"] == "table"
     assert run(["export", "--list"]) == 0

@@ -1,6 +1,7 @@
 //! Motors that go side by side do what each of them does alone, to the bit and at every width.
 #![allow(missing_docs)]
 
+use stiction_core::effects::EffectSpec;
 use stiction_core::ensemble::{Changes, Ensemble, Inputs, Keep, Plan, Rows};
 use stiction_core::friction::{LAWS, Statistics, law_record};
 use stiction_core::lanes::Width;
@@ -118,6 +119,33 @@ fn agrees(motor: &Motor, dt: f64) {
 fn every_law_does_the_same_side_by_side_as_alone() {
     for record in LAWS {
         agrees(&motor(record.name, &[]), 2e-4);
+    }
+}
+
+#[test]
+fn inputs_that_are_late_or_mapped_are_the_same_side_by_side() {
+    let effect = |name: &str, values: &[(&str, f64)]| {
+        let values: Vec<_> = values.iter().map(|(name, x)| ((*name).to_owned(), *x)).collect();
+        EffectSpec::new(name, &values).unwrap()
+    };
+    let of_drive = [
+        vec![effect("drive_deadband", &[("deadband", 0.02)])],
+        vec![effect("input_delay", &[("delay", 7.3e-4)])],
+        vec![
+            effect("torque_constant_saturation", &[("loss", 0.2), ("input", 0.6)]),
+            effect("current_loop_lag", &[("time", 2e-3)]),
+            effect("torque_bias", &[("bias", 0.01)]),
+        ],
+        vec![
+            effect("goal_rate_limit", &[("slowness", 0.02)]),
+            effect("drive_saturation", &[("share", 1.0), ("limit", 0.35)]),
+        ],
+    ];
+    for law in ["coulomb", "dahl", "hsieh_pan", "lugre", "maxwell_slip"] {
+        for effects in &of_drive {
+            let spec = MotorSpec { effects: effects.clone(), ..motor(law, &[]).spec().clone() };
+            agrees(&Motor::new(spec).unwrap(), 2e-4);
+        }
     }
 }
 

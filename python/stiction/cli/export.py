@@ -86,10 +86,14 @@ def export(
         speed = recorded_speed(loaded.recordings)
     made, refused = _written(read, to, speed)
     where = folder(Path(f"{plant.stem}-export") if out is None else out)
+    replaced = [_files_there(each, where / each.target) for each in made]
     with protect_writes(where):
         for each in made:
             each.save(where / each.target)
-    texts = [f"{each}\n  folder: {where / each.target}" for each in made]
+    texts = [
+        f"{each}\n  folder: {where / each.target}{old}"
+        for each, old in zip(made, replaced, strict=True)
+    ]
     data = [each.to_dict() for each in made]
     if check is not None and loaded is not None:
         with progress(quiet):
@@ -99,6 +103,12 @@ def export(
     texts += [f"{name}: not written: {told}" for name, told in refused.items()]
     data += [{"target": name, "error": told} for name, told in refused.items()]
     answer("\n".join(texts), data, as_json=json)
+
+
+def _files_there(made: Export, where: Path) -> str:
+    """Which files of an export stand in a folder already, in words."""
+    old = [name for name in made.files if (where / name).exists()]
+    return f" (in place of what was there: {commas(old)})" if old else ""
 
 
 def _written(

@@ -99,7 +99,8 @@ impl<S: Scalar> Machine<S> {
     }
 
     /// Whether nothing but drive, inertia, weight, a constant effort and friction is there: such a machine
-    /// has efforts that no motion changes, and levels of 1.
+    /// has efforts that no motion changes, and levels of 1. What becomes of its input before that hangs on
+    /// the input alone.
     pub fn is_bare(&self) -> bool {
         let alone = self.shaft.is_none() && !self.relaxes() && self.body.is_level();
         alone && self.effects.even_effort().is_some() && self.drive.servo.is_none()
@@ -282,7 +283,7 @@ impl<S: Scalar> Machine<S> {
         self.driven(input, &Situation::resting()) + load
     }
 
-    /// All effort but friction on this bare machine under an input and a load.
+    /// All effort but friction on this bare machine under an input, as effects have mapped it, and a load.
     #[inline(always)]
     pub fn bare_effort(&self, input: f64, load: S) -> S {
         self.drive.direct(input) + load + self.weight()
@@ -291,7 +292,13 @@ impl<S: Scalar> Machine<S> {
     /// Effort of the drive of a bare machine.
     #[inline(always)]
     pub(crate) fn bare_drive(&self, input: S, enabled: bool) -> S {
-        if enabled { self.drive.direct(input) } else { S::constant(0.0) }
+        if !enabled {
+            S::constant(0.0)
+        } else if self.effects.maps_inputs() {
+            self.driven(input, &Situation::resting())
+        } else {
+            self.drive.direct(input)
+        }
     }
 
     /// Effort of the drive.
@@ -365,7 +372,7 @@ impl<S: Scalar> Machine<S> {
         channels: &mut Channels<S>,
         [driven, ambient]: [&mut S; 2],
     ) {
-        *driven = self.bare_drive(input, at.enabled);
+        *driven = if at.enabled { self.drive.direct(input) } else { S::constant(0.0) };
         *ambient = self.weight();
         channels.effort = *driven + load + *ambient;
         channels.load = at.carried(load + self.body.level_gravity());

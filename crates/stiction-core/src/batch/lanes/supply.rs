@@ -3,7 +3,7 @@
 use stiction_dispatch::{CHUNKS, Mask, ROW, Vector, Wide, fetch};
 
 use super::record::SAMPLES;
-use super::team::Member;
+use super::team::{Member, Team};
 use crate::batch::ensemble::{Inputs, Plan, Rows};
 use crate::friction::FrictionLaw;
 use crate::math::row::{Row, WIDTH};
@@ -21,6 +21,26 @@ pub struct Supply {
     weights: Vec<Row>,
     efforts: Vec<Row>,
     loads: Vec<Row>,
+    /// Whether efforts are gains times inputs, within a limit.
+    direct: bool,
+}
+
+/// What arrives of inputs that are held up or mapped, in some samples.
+#[derive(Debug, Default)]
+pub struct Arrived {
+    /// The first of them.
+    first: usize,
+    blocks: usize,
+    /// Block by block in each sample; none where inputs are what arrives.
+    rows: Vec<Row>,
+}
+
+impl Arrived {
+    /// What arrives at a member of the team in a sample, where that is not the input itself.
+    pub fn of(&self, member: usize, sample: usize) -> Option<f64> {
+        let row = self.rows.get((sample - self.first) * self.blocks + member / WIDTH)?;
+        Some(row.0[member % WIDTH])
+    }
 }
 
 impl Supply {
@@ -36,13 +56,19 @@ impl Supply {
             limits[k / WIDTH].0[k % WIDTH] = limit;
             weights[k / WIDTH].0[k % WIDTH] = weight;
         }
+        let direct = members.iter().all(|m| m.way.is_none() && !m.machine.effects.maps_inputs());
         let members: Vec<usize> = members.iter().map(|member| member.number).collect();
         let starts = members.chunks(WIDTH).map(|members| {
             let start = |lane: usize| members.get(lane).unwrap_or(&members[0]) * samples;
             std::array::from_fn(start)
         });
         let starts = starts.collect();
-        Self { members, starts, gains, limits, weights, efforts: many.clone(), loads: many }
+        Self { members, starts, gains, limits, weights, efforts: many.clone(), loads: many, direct }
+    }
+
+    /// Whether nothing holds inputs up or maps them.
+    pub fn is_direct(&self) -> bool {
+        self.direct
     }
 
     /// Efforts of each block in each sample.
@@ -67,7 +93,55 @@ impl Supply {
     /// Works out the efforts of some samples, where all that they are made of is finite. Returns whether
     /// it is.
     pub fn fill(&mut self, plan: &Plan<'_>, first: usize, length: usize) -> bool {
-        plan.width.run_wide(Fill { supply: self, plan, first, length })
+        plan.width.run_wide(Fill { supply: self, plan, first, length, raw: None })
+    }
+
+    /// The same where some of a team have inputs that are held up or mapped: member by member.
+    pub fn fill_changed<S: Scalar, L: FrictionLaw<S>>(
+        &mut self,
+        team: &mut Team<'_, S, L>,
+        first: usize,
+        length: usize,
+    ) -> bool {
+        let (plan, dt) = (team.job.plan, team.job.dt);
+        let blocks = team.members.len().div_ceil(WIDTH);
+        let Arrived { rows, .. } = &mut team.arrived;
+        rows.resize(blocks * SAMPLES, Row::ZERO);
+        let fill = Fill { supply: self, plan, first, length, raw: Some(&mut *rows) };
+        if !plan.width.run_wide(fill) {
+            return false;
+        }
+        let mut inputs = [0.0; SAMPLES];
+        let lanes = blocks * WIDTH;
+        for k in 0..lanes {
+            let (block, lane) = (k / WIDTH, k % WIDTH);
+            let Some(member) = team.members.get_mut(k) else {
+                // Lanes that are left over see what the first one of their block sees.
+                for row in self.efforts[..length * blocks].iter_mut().skip(block).step_by(blocks) {
+                    row.0[lane] = row.0[0];
+                }
+                continue;
+            };
+            for (sample, place) in inputs[..length].iter_mut().enumerate() {
+                let input = &mut rows[sample * blocks + block].0[lane];
+                if let Some(way) = &mut member.way {
+                    *input = way.pass(*input, None, dt).re();
+                }
+                *place = *input;
+            }
+            member.machine.effects.map_inputs(&mut inputs[..length]);
+            for (sample, input) in inputs[..length].iter().enumerate() {
+                let row = sample * blocks + block;
+                let load = match plan.loads {
+                    Rows::Same(load) => load,
+                    _ => self.loads[row].0[lane],
+                };
+                let load = S::constant(0.0 + load);
+                self.efforts[row].0[lane] = member.machine.bare_effort(*input, load).re();
+            }
+        }
+        (team.arrived.first, team.arrived.blocks) = (first, blocks);
+        true
     }
 }
 
@@ -116,6 +190,8 @@ struct Fill<'a> {
     plan: &'a Plan<'a>,
     first: usize,
     length: usize,
+    /// Where inputs go as they are, where no effort is made of them.
+    raw: Option<&'a mut [Row]>,
 }
 
 impl Wide for Fill<'_> {
@@ -123,7 +199,7 @@ impl Wide for Fill<'_> {
 
     #[inline(always)]
     fn run<V: Vector>(self) -> bool {
-        let Self { supply, plan, first, length } = self;
+        let Self { supply, plan, first, length, raw } = self;
         let Supply { members, gains, limits, weights, efforts, loads, .. } = supply;
         let stretch = (first, length);
         let load = if let Rows::Same(load) = plan.loads { Some(load) } else { None };
@@ -131,6 +207,10 @@ impl Wide for Fill<'_> {
             && !spread::<V, _>(loads, plan.loads, plan.samples, members, stretch, &AsTheyAre)
         {
             return false;
+        }
+        if let Some(raw) = raw {
+            let inputs = plan.inputs.rows();
+            return spread::<V, _>(raw, inputs, plan.samples, members, stretch, &AsTheyAre);
         }
         let drives = Drives { gains, limits, weights, load, loads };
         spread::<V, _>(efforts, plan.inputs.rows(), plan.samples, members, stretch, &drives)

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use stiction_dispatch::{Vector, Wide};
 
 use super::record::{Record, SAMPLES};
-use super::supply::{Ahead, Supply, load_of};
+use super::supply::{Ahead, Arrived, Supply, load_of};
 use super::tally::Tally;
 use crate::batch::ensemble::{Keep, Plan};
 use crate::friction::elements::abreast::{Block, Bodies, Contacts, SideBySide};
@@ -15,6 +15,7 @@ use crate::friction::{Catalogued, FrictionLaw, LawState};
 use crate::integrate::{Integrator, MOST_PARTS, Steps, step};
 use crate::math::row::{Row, WIDTH, lanes};
 use crate::math::scalar::Scalar;
+use crate::plant::drive::Way;
 use crate::plant::{Machine, Run};
 use crate::simulate::model::CHUNK;
 use crate::simulate::motor::{Column, Running};
@@ -52,6 +53,8 @@ pub struct Member<'a, S: Scalar, L: FrictionLaw<S>> {
     pub state: &'a mut L::State,
     /// Body.
     pub run: &'a mut Run<S>,
+    /// What holds its input up.
+    pub way: Option<&'a mut Way<S>>,
     /// Pieces of a step while its friction falls with speed.
     pub pieces: u32,
     /// Where its columns go.
@@ -77,6 +80,8 @@ pub struct Team<'a, S: Scalar, L: FrictionLaw<S>> {
     pub members: Vec<Member<'a, S, L>>,
     /// What they do.
     pub job: &'a Job<'a>,
+    /// What has arrived of inputs that are held up or mapped.
+    pub arrived: Arrived,
 }
 
 /// What a team does.
@@ -220,11 +225,11 @@ fn kind_of<L>(_: &L) -> PhantomData<L> {
 fn take<L: Catalogued<f64>>(_: PhantomData<L>, job: &Job<'_>, motors: Vec<Motor<'_>>) {
     let members = motors.into_iter().map(|Motor { number, running, own }| {
         let pieces = running.division(job.dt).pieces;
-        let Running { machine, law, state, run, .. } = running;
+        let Running { machine, law, state, run, way, .. } = running;
         let (law, state) = L::among(law, state).expect("motors of an ensemble have one law");
-        Member { number, machine, law, state, run, pieces, own }
+        Member { number, machine, law, state, run, way: way.as_mut(), pieces, own }
     });
-    let mut team = Team { members: members.collect(), job };
+    let mut team = Team { members: members.collect(), job, arrived: Arrived::default() };
     let Some(law) = team.members.first().map(|member| member.law) else { return };
     law.abreast(&mut team);
 }
@@ -252,7 +257,11 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         let mut first = 0;
         while first < samples {
             let length = SAMPLES.min(samples - first);
-            let finite = supply.fill(plan, first, length);
+            let finite = if supply.is_direct() {
+                supply.fill(plan, first, length)
+            } else {
+                supply.fill_changed(self, first, length)
+            };
             if !finite || self.job.halted.load(Ordering::Relaxed) || interrupt::due() {
                 self.job.halted.store(true, Ordering::Relaxed);
                 return;
@@ -347,6 +356,7 @@ impl<S: Scalar, L: FrictionLaw<S>> Team<'_, S, L> {
         block.contacts.store(lane, member.state);
         member.make_room(&mut room[k]);
         let (input, load) = applied(self.job.plan, member.number, sample);
+        let input = self.arrived.of(k, sample).unwrap_or(input);
         let (input, load) = (S::constant(input), S::constant(load));
         let steps = Steps::of(self.job.dt, self.job.parts, member.pieces);
         let Member { machine, law, state, run, .. } = member;

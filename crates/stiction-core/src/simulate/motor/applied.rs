@@ -4,7 +4,7 @@ use super::column::OfMachine;
 use crate::integrate::{Acting, Efforts, Stillness};
 use crate::math::scalar::Scalar;
 use crate::plant::drive::{Way, arriving};
-use crate::plant::effects::Situation;
+use crate::plant::effects::{Effects, Situation};
 use crate::plant::{Before, Machine, Run};
 use crate::simulate::model::CHUNK;
 use crate::support::samples::{PerSample, Surroundings};
@@ -27,6 +27,7 @@ pub(super) struct Notes<'a, S: Scalar> {
 }
 
 impl<'a, S: Scalar> Notes<'a, S> {
+    /// Of a machine whose inputs come along a way, where they have not arrived ahead of the row.
     pub(super) fn new(machine: &Machine<S>, way: Option<&'a mut Way<S>>, run: &Run<S>) -> Self {
         let takes = machine.notes_samples();
         let (any, before) = (takes || way.is_some(), Before::of(run));
@@ -118,7 +119,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE>
         if self.by_place {
             return;
         }
-        let load = (self.added)(sample) + self.around.load.at(sample);
+        let load = self.load(sample);
         let held = self.machine.driven_anywhere(input, load);
         self.ahead.hold(sample, held.re());
         self.notes.held = Some(held);
@@ -255,7 +256,10 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
             return held;
         }
         let load = self.load(sample);
-        if BARE {
+        if BARE && self.machine.effects.maps_inputs() {
+            let input = S::constant(self.inputs[sample]);
+            self.machine.driven_anywhere(input, load) + self.machine.weight()
+        } else if BARE {
             self.machine.bare_effort(self.inputs[sample], load)
         } else {
             self.machine.driven_directly(self.inputs[sample], load)
@@ -286,11 +290,13 @@ pub(super) struct Ahead {
     from: usize,
     number: usize,
     efforts: [f64; AHEAD],
+    /// What has arrived of the inputs, where something holds them up.
+    arrived: Vec<f64>,
 }
 
 impl Default for Ahead {
     fn default() -> Self {
-        Self { from: 0, number: 0, efforts: [0.0; AHEAD] }
+        Self { from: 0, number: 0, efforts: [0.0; AHEAD], arrived: Vec::new() }
     }
 }
 
@@ -304,7 +310,7 @@ impl Ahead {
         loads: PerSample<'_>,
         effort: impl Fn(usize, f64, f64) -> f64,
     ) {
-        if self.from <= sample && sample < self.end() {
+        if self.has(sample) {
             return;
         }
         self.from = sample;
@@ -322,6 +328,47 @@ impl Ahead {
                 *place = effort(k, *input, loads.at(k));
             }
         }
+    }
+
+    /// The same of inputs that come along a way, where there is one, and are mapped; made of sample and what
+    /// becomes of the input.
+    pub(super) fn reach_through<S: Scalar>(
+        &mut self,
+        sample: usize,
+        inputs: &[f64],
+        dt: PerSample<'_>,
+        way: &mut Option<&mut Way<S>>,
+        (effects, effort): (&Effects<S>, impl Fn(usize, f64) -> f64),
+    ) {
+        if self.has(sample) {
+            return;
+        }
+        self.from = sample;
+        self.number = AHEAD.min(inputs.len() - sample);
+        let given = &inputs[sample..self.end()];
+        let efforts = &mut self.efforts[..given.len()];
+        if let Some(way) = way {
+            let pass = |(k, input): (usize, &f64)| way.pass(*input, None, dt.at(k)).re();
+            self.arrived.clear();
+            self.arrived.extend((sample..).zip(given).map(pass));
+            efforts.copy_from_slice(&self.arrived);
+        } else {
+            efforts.copy_from_slice(given);
+        }
+        effects.map_inputs(efforts);
+        for (place, k) in efforts.iter_mut().zip(sample..) {
+            *place = effort(k, *place);
+        }
+    }
+
+    fn has(&self, sample: usize) -> bool {
+        self.from <= sample && sample < self.end()
+    }
+
+    /// What has arrived in a sample, where it is known.
+    pub(super) fn arrived(&self, sample: usize) -> Option<f64> {
+        let place = sample.checked_sub(self.from)?;
+        self.arrived.get(place).copied()
     }
 
     /// Has this effort in a sample, and that of no other one.

@@ -243,7 +243,7 @@ impl<S: Scalar> Running<S> {
         whole_parts(self.parts(longest), self.most_parts, longest)?;
         let mut meter = Meter::new(self.allowance.unwrap_or_else(|| work::allowed(inputs.len())));
         meter.foresee(self.foreseen(&around, dt, inputs.len()))?;
-        let done = if self.machine.is_bare() {
+        let done = if self.goes_bare(&around) {
             self.simulate_kind::<true>(inputs, around, added, dt, rows, &mut meter)
         } else {
             self.simulate_kind::<false>(inputs, around, added, dt, rows, &mut meter)
@@ -263,25 +263,29 @@ impl<S: Scalar> Running<S> {
             PerSample::Same(dt) => self.parts(dt) * samples as f64,
             PerSample::Each(values) => self.parts(values.iter().sum()),
         };
-        let plain = self.has_rows(around);
+        let plain = self.has_rows();
         let cost = with_law!(&self.law, |law| if plain && law.glides() {
-            work::in_a_row::<S>() * (law.glide_cost() + self.cost_in_a_row())
+            work::in_a_row::<S>() * (law.glide_cost() + self.cost_in_a_row(around))
         } else {
             self.of_step()
         });
         parts * cost as f64
     }
 
+    /// Whether efforts are made of inputs and loads alone, and may be ahead of the row.
+    fn goes_bare(&self, around: &Surroundings<'_>) -> bool {
+        let ahead = !S::CARRIES || self.way.is_none();
+        self.machine.is_bare() && around.is_steady() && ahead
+    }
+
     /// Whether plain steps of this motor go in rows.
-    fn has_rows(&self, around: &Surroundings<'_>) -> bool {
-        let bare = self.machine.is_bare();
-        let has = if bare { around.is_steady() } else { self.machine.has_rows() };
-        has && self.integrator == Integrator::Fast
+    fn has_rows(&self) -> bool {
+        self.machine.has_rows() && self.integrator == Integrator::Fast
     }
 
     /// What a step in a row costs beside that of its law.
-    fn cost_in_a_row(&self) -> u64 {
-        if self.machine.is_bare() {
+    fn cost_in_a_row(&self, around: &Surroundings<'_>) -> u64 {
+        if self.goes_bare(around) {
             return 0;
         }
         self.machine.effects.cost_in_a_row() + u64::from(self.machine.drive.servo.is_some())
@@ -296,15 +300,20 @@ impl<S: Scalar> Running<S> {
         mut rows: impl Rows<S>,
         meter: &mut Meter,
     ) -> Result<()> {
-        let plain = self.has_rows(&around);
+        let plain = self.has_rows();
         let strains = !BARE && self.machine.effects.strains();
         // What is said of the drive without asking where the body is holds while it is on.
         let by_place = !BARE && (self.machine.drives_by_place() || !around.is_steady());
         let swings = !BARE && self.machine.shaft.is_some();
         // How finely a sample goes hangs on its input before anything holds that up.
         let alone = !BARE && (!around.is_steady() || (strains && self.way.is_some()));
-        let beside = self.cost_in_a_row();
-        let mut notes = Notes::new(&self.machine, self.way.as_mut(), &self.run);
+        let beside = self.cost_in_a_row(&around);
+        let mut way = self.way.as_mut();
+        let mut early = if BARE { way.take() } else { None };
+        // Whether what becomes of inputs is made ahead of the row.
+        let changed =
+            BARE && !S::CARRIES && (early.is_some() || self.machine.effects.maps_inputs());
+        let mut notes = Notes::new(&self.machine, way, &self.run);
         let notes_any = notes.any();
         with_law_and_state!(&self.law, &mut self.state, |law, state| {
             let glides = plain && law.glides();
@@ -348,7 +357,13 @@ impl<S: Scalar> Running<S> {
                     };
                     let machine = &mut self.machine;
                     let asked = S::CARRIES || by_place || notes.holds_up();
-                    if !asked {
+                    if changed {
+                        let effort = |k: usize, input: f64| {
+                            machine.bare_effort(input, added(k) + around.load.at(k)).re()
+                        };
+                        let through = (&machine.effects, effort);
+                        ahead.reach_through(index, inputs, dt, &mut early, through);
+                    } else if !asked {
                         ahead.reach(index, inputs, around.load, |k, input, load| {
                             let load = added(k) + load;
                             let effort = if BARE {
@@ -436,7 +451,11 @@ impl<S: Scalar> Running<S> {
                 if passed == 0 {
                     notes.begin(&self.run);
                 }
-                let arrived = notes.arriving(inputs[index], dt_now);
+                let arrived = match (&mut early, ahead.arrived(index)) {
+                    (Some(_), Some(arrived)) => S::constant(arrived),
+                    (Some(way), None) => way.pass(inputs[index], None, dt_now),
+                    (None, _) => notes.arriving(inputs[index], dt_now),
+                };
                 sample::<_, _, BARE>(
                     &self.machine,
                     law,

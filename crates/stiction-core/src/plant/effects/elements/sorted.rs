@@ -35,7 +35,7 @@ pub struct Effects<S: Scalar> {
     levels: Vec<Term<S>>,
     efforts: Vec<Term<S>>,
     /// Sum of the efforts, where all are the same everywhere and always and nothing else is changed but what
-    /// the sensor reads.
+    /// the sensor reads and the input, which neither place nor speed change.
     even_effort: Option<S>,
     inputs: Vec<usize>,
     /// Whether any of those on the input goes by place or speed.
@@ -123,9 +123,11 @@ impl<S: Scalar> Effects<S> {
             let memory = with_effect!(&effect, |e| e.fresh());
             sorted.kept.push(Kept { effect, memory });
         }
-        let hooks = sorted.kept.iter().flat_map(|kept| kept.effect.hooks());
-        let other = |hook: &&Hook| !matches!(hook, Hook::AddedEffort | Hook::SensorMap);
-        if sorted.remembers || hooks.filter(other).count() > 0 {
+        let of_body = |hook: &Hook| {
+            matches!(hook, Hook::FrictionLevel | Hook::StateRelaxation | Hook::SecondMass)
+        };
+        let mut hooks = sorted.kept.iter().flat_map(|kept| kept.effect.hooks());
+        if sorted.remembers || sorted.by_place || hooks.any(of_body) {
             sorted.even_effort = None;
         }
         sorted
@@ -276,7 +278,7 @@ impl<S: Scalar> Effects<S> {
     }
 
     /// Sum of the added efforts, where it is the same everywhere and always and nothing else is changed but
-    /// what the sensor reads.
+    /// what the sensor reads and the input, which neither place nor speed change.
     #[inline(always)]
     pub fn even_effort(&self) -> Option<S> {
         if self.is_seeded() { None } else { self.even_effort }
@@ -332,6 +334,16 @@ impl<S: Scalar> Effects<S> {
         self.inputs.iter().fold(input, |input, place| {
             with_effect!(&self.kept[*place].effect, |e| e.input(input, at))
         })
+    }
+
+    /// What many inputs become, where neither place nor speed are asked.
+    pub fn map_inputs(&self, inputs: &mut [f64]) {
+        let resting = Situation::resting();
+        for place in &self.inputs {
+            with_effect!(&self.kept[*place].effect, |e| for input in &mut *inputs {
+                *input = e.input(S::constant(*input), &resting).re();
+            });
+        }
     }
 
     /// What the sensor reads.
