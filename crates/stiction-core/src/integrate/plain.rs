@@ -37,11 +37,10 @@ impl<S: Scalar> Machine<S> {
         if S::CARRIES {
             return self.acting_apart(at, load(), pull.as_ref(), there);
         }
-        let beside = self.surroundings(at);
+        let beside = self.added_apart(at);
         there.ambient = pull.map_or(beside, |pull| beside + pull);
         if self.effects.changes_levels() {
-            let at = self.at_contact(at, there.driving + there.ambient, load());
-            there.levels = self.effects.levels(&at);
+            there.levels = self.levels_apart(at, there.driving + there.ambient, load());
         }
     }
 
@@ -59,7 +58,7 @@ impl<S: Scalar> Machine<S> {
 
     /// Levels of its contact where a run is, likewise.
     #[inline(never)]
-    fn levels_apart(&self, run: &Run<S>, acting: [&S; 2], levels: &mut (S, S)) {
+    fn levels_of_run(&self, run: &Run<S>, acting: [&S; 2], levels: &mut (S, S)) {
         S::run(LevelsOf { machine: self, run, acting, levels });
     }
 
@@ -81,10 +80,9 @@ impl<S: Scalar> Machine<S> {
             _ => {
                 let (effort, load) = acting();
                 if S::CARRIES {
-                    return self.levels_apart(run, [&effort, &load], levels);
+                    return self.levels_of_run(run, [&effort, &load], levels);
                 }
-                let at = self.at_contact(&run.situation(), effort + run.ambient, load);
-                *levels = self.effects.levels(&at);
+                *levels = self.levels_apart(&mut run.situation(), effort + run.ambient, load);
             }
         }
     }

@@ -223,6 +223,12 @@ impl<S: Scalar> Machine<S> {
         gravity + self.effects.effort_within(at)
     }
 
+    /// The same once for all laws.
+    #[inline(never)]
+    pub(crate) fn added_apart(&self, at: &mut Situation<S>) -> S {
+        self.added_there(at)
+    }
+
     /// Levels of the contact under all effort but friction, of which the load is a part, likewise.
     #[inline(always)]
     pub(crate) fn levels_there(&self, at: &mut Situation<S>, effort: S, load: S) -> (S, S) {
@@ -231,6 +237,12 @@ impl<S: Scalar> Machine<S> {
         at.motor = effort - load;
         at.sliding = self.sliding;
         self.effects.levels_within(at)
+    }
+
+    /// The same once for all laws.
+    #[inline(never)]
+    pub(crate) fn levels_apart(&self, at: &mut Situation<S>, effort: S, load: S) -> (S, S) {
+        self.levels_there(at, effort, load)
     }
 
     /// What the drive is commanded: the input, or the voltage that a servo makes of its goal.
