@@ -11,7 +11,7 @@ from stiction.diagnosis.data.evidence import Evidence
 from stiction.diagnosis.screening.base import fit_baseline
 from stiction.diagnosis.screening.candidates import candidates, scales_of
 from stiction.diagnosis.screening.model import with_effect
-from stiction.diagnosis.selection.rounds import _candidates
+from stiction.diagnosis.selection.eligible import eligible_candidates
 from stiction.diagnosis.selection.search import Search
 from stiction.diagnosis.selection.sharpen import _held
 
@@ -70,11 +70,11 @@ def test_where_a_fall_is_stated_its_lag_is_found_alone() -> None:
     laws = {**table["friction"], "breakaway": 0.2, "stribeck_velocity": 0.1}
     for own in (stated, {**table, "friction": laws}):
         evidence, base = fit_baseline(st.Plant.from_dict(own), as_session(made).recordings)
-        tried = _candidates(evidence, base, (), Search([base]))
+        tried = eligible_candidates(evidence, base, (), Search([base]))
         assert {c.shape["fall"] for c in tried if c.name == "frictional_lag"} == {0.0}
     evidence, base = fit_baseline(as_plant(made), as_session(made).recordings)
     for without, forms in (((), {0.0, 1.0}), (("stribeck",), {0.0})):
-        tried = _candidates(evidence, base, without, Search([base]))
+        tried = eligible_candidates(evidence, base, without, Search([base]))
         assert {c.shape["fall"] for c in tried if c.name == "frictional_lag"} == forms
 
 

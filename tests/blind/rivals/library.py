@@ -13,7 +13,8 @@ from stiction.diagnosis.screening.base import fit_baseline
 from stiction.diagnosis.screening.model import fit_model, likeliest_of, step_beside, with_effect
 from stiction.diagnosis.screening.regression import bounded_gains
 from stiction.diagnosis.screening.signatures import Signatures
-from stiction.diagnosis.selection.rounds import _candidates, friction_of
+from stiction.diagnosis.selection.eligible import eligible_candidates
+from stiction.diagnosis.selection.rounds import friction_of
 from stiction.diagnosis.selection.search import Search
 
 ALPHA = 0.01
@@ -113,7 +114,7 @@ def library(path):
     session = st.load(path)
     try:
         evidence, base = fit_baseline(session.plant, session.recordings)
-        tried = _candidates(evidence, base, (), Search([base]))
+        tried = eligible_candidates(evidence, base, (), Search([base]))
     except st.InputError:
         return None
     return _seen(evidence, base, tried)

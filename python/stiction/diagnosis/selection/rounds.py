@@ -10,16 +10,14 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ...catalogue import EffectRecord, effects
+from ...catalogue import EffectRecord
 from ...fitting.rows import timing_bound
-from ...plant import Plant
 from ..adequacy.exact_forms import several
 from ..data.evidence import Evidence
-from ..data.noise import input_noise
 from ..data.replay import centre, common_bias, reading_power
 from ..defaults import ALPHA, SMALLEST
 from ..records import CandidateRow
-from ..screening.candidates import FALL, Candidate, candidates, present, scales_of
+from ..screening.candidates import Candidate
 from ..screening.model import Known, Model, without_effect
 from ..screening.screen import Score
 from ..screening.signatures import Signatures
@@ -28,6 +26,7 @@ from .beside import doubt_by_forms, doubt_by_rests
 from .choose import ALIKE, Choice, choose, covers, parallel
 from .decide import LEAST_GAIN, LEAST_STRENGTH, Trial, degeneracy
 from .discretisation import doubt_by_discretisation
+from .eligible import eligible_candidates
 from .fewer import MIMIC, join, rebuild_models, remove_redundant, without
 from .restarts import from_before, from_the_first
 from .search import Search
@@ -57,14 +56,6 @@ MOST_RENEWALS: Final = 2
 """Times that the base is replaced by a better fit of itself."""
 WORTH_RENEWING: Final = 0.005
 """Share of its residual's power that makes that worth while."""
-AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
-"""Hooks of effects that a machine without a drive cannot have."""
-FALLS: Final = frozenset(record.name for record in effects() if record.falls)
-"""Falls of friction with speed: where there is one, or is not to be looked for, a lag has none."""
-SWINGS: Final = "second mass"
-"""Hook of effects whose mass swings faster than the samples of a servo show."""
-MUCH_NOISE: Final = 0.3
-"""Noise of a logged effort over what is left from which on it looks like friction by it."""
 LEANS: Final = 0.5
 """Share of the greatest offset of timing from which on a base may have taken a delay for one."""
 RELATED: Final = 0.2
@@ -110,7 +101,7 @@ def search(
         bias, centred = centre(null)
         centred = centred[evidence.fitted]
         bias = common_bias(bias, base.residual, evidence.cells.recording)
-        tried = _candidates(evidence, base, without, found)
+        tried = eligible_candidates(evidence, base, without, found)
         if not tried:
             return found
         signatures = Signatures.of(evidence, base.plant, base.nuisances, tried)
@@ -162,77 +153,6 @@ def search(
         for candidate in tried:
             found.rows.setdefault(candidate.name, listing.row_of_candidate(candidate))
     return found
-
-
-def _candidates(
-    evidence: Evidence, base: Model, without: Sequence[str], found: Search
-) -> list[Candidate]:
-    """What to try, and a row for each effect that is not tried."""
-    scales = scales_of(evidence, base.plant)
-    channels = set.intersection(*(set(r.channels) for r in evidence.recordings))
-    if all(form.own(base.plant).hangs for form in evidence.forms):
-        channels.add("load")
-    # A fall that the plant states and one that comes with its lag would exchange for each other.
-    falls = any(each.falls and present(base.plant, each) for each in effects())
-    tried: list[Candidate] = []
-    for record in effects():
-        if record.name in without:
-            continue
-        reason = _refused(evidence, base.plant, record)
-        missing = [name for name in record.channels if name not in channels]
-        if not reason and missing:
-            reason = f"not testable: no channel {missing[0]} was recorded"
-            found.blind.append(record)
-        if not reason and record.by_motor and "load" in channels:
-            # The motor bears the load first of all: beside that both would be one.
-            reason = "not tried: the load is known, and friction that grows with it is tried"
-        if not reason and record.by_motor and _is_noisy(evidence, base):
-            reason = "not testable: the effort that friction would grow with has noise in its log"
-        if reason:
-            found.rows[record.name] = CandidateRow(record.name, None, None, None, reason)
-        else:
-            found_at = candidates(record, scales)
-            if falls or not FALLS.isdisjoint(without):
-                found_at = [each for each in found_at if not each.shape.get(FALL)]
-            swings = base.plant.inertia > 0.0
-            tried += [each for each in found_at if swings or not each.resonance]
-    return tried
-
-
-def _is_noisy(evidence: Evidence, base: Model) -> bool:
-    """Whether noise of the logged effort is much of what is left along the measured motion.
-
-    It would be in the residual and in the friction by that effort alike, and explain itself.
-    """
-    if evidence.simulated:
-        return False
-    left, noise = [], []
-    for rows in evidence.train:
-        own = rows.residual(base.plant, base.nuisances)[rows.mask]
-        left.append(float(np.sqrt(np.mean(own**2))))
-        noise.append(input_noise(rows, base.plant, base.nuisances))
-    return float(np.median(noise)) > MUCH_NOISE * float(np.median(left))
-
-
-def _refused(evidence: Evidence, plant: Plant, record: EffectRecord) -> str:
-    """Why an effect is not tried on such a machine, "" where it is."""
-    if present(plant, record):
-        return _where(plant, record)
-    if reason := record.impossible(plant.motion, servo=plant.servo):
-        return reason
-    if evidence.loop and SWINGS in record.hooks:
-        return "not testable: what swings between samples shows in no loop that is simulated"
-    if plant.prescribed_motion and (record.by_motor or not AT_THE_DRIVE.isdisjoint(record.hooks)):
-        return "there is no drive where the motion is prescribed"
-    return ""
-
-
-def _where(plant: Plant, record: EffectRecord) -> str:
-    """Where a plant holds an effect already."""
-    if any(effect.name == record.name for effect in plant.effects):
-        return "part of the plant"
-    body = any(term.startswith("body.") for term in record.law_terms)
-    return "part of the body" if body else "part of the law"
 
 
 def _round(
