@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 from tests.blind.score import as_plant, as_session
@@ -12,7 +10,7 @@ from tests.reference.session_reference import make_session
 
 import stiction as st
 from stiction.diagnosis.adequacy.passing import MOMENTS
-from stiction.diagnosis.phrases import NO_COORDINATE, UNDETERMINED
+from stiction.diagnosis.phrases import NO_COORDINATE
 from stiction.diagnosis.records import Cause, Unexplained
 from stiction.diagnosis.selection import left_open
 
@@ -93,18 +91,3 @@ def test_a_known_speed_says_nothing_of_the_strength() -> None:
 
     assert lag((-3.9, 12.5)).doubtful
     assert not lag((3.9, 12.5)).doubtful
-
-
-def test_a_name_with_a_number_that_nothing_bounds_is_left_open() -> None:
-    """What tells a friction that comes late from one that does not is the time."""
-    numbers = {
-        "effects.frictional_lag.excess": number(ci95=(3.9, 12.5)),
-        "effects.frictional_lag.time": number(ci95=(-math.inf, math.inf)),
-    }
-    known = {path: number(ci95=(3.9, 12.5)) for path in numbers}
-    for parameters, doubt in ((numbers, UNDETERMINED), (known, "")):
-        causes = [cause("frictional_lag", parameters=parameters)]
-        strengths = {"frictional_lag": 60.0}
-        selection = search("frictional_lag", models=[model(strength=strengths)] * 2)
-        (told,) = left_open.leave_open(selection, causes, [], [], [], [])
-        assert (told.decided, told.doubt) == (not doubt, doubt)

@@ -16,7 +16,7 @@ __all__ = [
     "PARTLY",
     "THE_LAW",
     "UNCONFIRMED",
-    "UNDETERMINED",
+    "UNPLACED",
     "UNREPEATED",
 ]
 
@@ -40,10 +40,10 @@ PARTLY = (
     "came for a few seconds alone, looks like that"
 )
 """Why a limit may be something else."""
-UNCONFIRMED = "it may make the held-out rows worse by as much as it makes them better"
+UNCONFIRMED = "the rows held out for the test do not bear it out: its gain there may be nothing"
 """Why a name that the rows that decide bear out may be none."""
-UNDETERMINED = "these data do not determine all of its numbers"
-"""Why what is told by its shape may have another one."""
+UNPLACED = "these data do not tell where the limit lies"
+"""Why a limit may be none."""
 UNREPEATED = "less than one period was travelled, and a spring may look the same"
 """Why what should repeat with position may be something else."""
 LEAVES_NOTHING = "what is left goes with {}, and of that it leaves nothing where it is the cause"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
@@ -118,12 +117,6 @@ class Cause(_Gained):
             if path.rsplit(".", 1)[-1] not in shapes
         ]
         return bool(intervals) and all(low <= 0.0 <= high for low, high in intervals)
-
-    @property
-    def undetermined(self) -> bool:
-        """Whether some number of it has no interval: the data fit any value of it alike."""
-        ends = (end for parameter in self.parameters.values() for end in parameter.ci95)
-        return not all(map(math.isfinite, ends))
 
     def to_dict(self) -> dict[str, Any]:
         """As an entry of ``effects``."""

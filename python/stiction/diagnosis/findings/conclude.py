@@ -400,7 +400,7 @@ class Conclusion:
             of_names = rests_of(causes, self.rests[1], remainder_share(selection))
             unexplained += tuple(each for each in of_names if each.coordinate not in shown)
             replaced = {name for each in self.fixed_parameters for name in each.instead}
-            unsure = unconfirmed_names(causes, test, found.seed)
+            unsure = unconfirmed_names(self.selection, causes, test, found.seed)
             causes = leave_open(selection, causes, unexplained, of_names, replaced, unsure)
             if self.restated or any(rival.as_good for rival in self.rivals):
                 causes = beside_another_law(causes)

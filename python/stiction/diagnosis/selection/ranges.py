@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Final, NamedTuple
 
@@ -14,7 +15,14 @@ from ..data.noise import input_noise
 from ..screening.candidates import Candidate
 from ..screening.model import Model
 
-__all__ = ["OF_READING", "is_whole", "out_of_its_range", "partial_loss", "surely_a_part"]
+__all__ = [
+    "OF_READING",
+    "is_placed",
+    "is_whole",
+    "out_of_its_range",
+    "partial_loss",
+    "surely_a_part",
+]
 
 
 MEMORY: Final = "memory"
@@ -147,6 +155,16 @@ def surely_a_part(candidate: Candidate, model: Model) -> bool:
         return False
     number = model.fit_result.parameters[f"effects.{candidate.name}.{LIMIT.gain}"]
     return number.value + SURELY * number.stderr < LIMIT.whole
+
+
+def is_placed(candidate: Candidate, model: Model) -> bool:
+    """Whether the data tell where a limit lies; of anything else nobody asks."""
+    if not candidate.record.limits:
+        return True
+    numbers = model.fit_result.parameters
+    paths = [f"effects.{candidate.name}.{s.parameter}" for s in candidate.record.shapes]
+    ends = [end for path in paths if path in numbers for end in numbers[path].ci95]
+    return all(map(math.isfinite, ends))
 
 
 def _value(candidate: Candidate, model: Model, name: str) -> float:
