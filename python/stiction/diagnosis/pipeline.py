@@ -20,6 +20,7 @@ from .._support.progress import phase
 from .._support.wording import plural
 from .._support.workers import with_workers
 from ..errors import InputError, NotEnoughData
+from ..fitting.sampling import reading_words
 from ..plant import Plant
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
@@ -39,6 +40,7 @@ from .otherwise import look_otherwise
 from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
 from .screening.base import (
     fit_baseline,
+    fit_baseline_as_read,
     fit_joint_baseline,
     fit_simulated_baseline,
     fit_wider_baseline,
@@ -149,6 +151,7 @@ def diagnose(
         "noise": [],
         "replicates": None,
         "residual": None,
+        "input_ahead": 0.0,
     }
     found = Diagnosis(
         verdict="not_testable",
@@ -171,7 +174,9 @@ def diagnose(
         try:
             with with_workers(threads):
                 found = _testable(found, usable, asked, checks)
-            found = replace(found, sentence=" ".join(filter(None, (found.sentence, fault, doubt))))
+            read = reading_words(found.data["input_ahead"])
+            sentences = filter(None, (found.sentence, read, fault, doubt))
+            found = replace(found, sentence=" ".join(sentences))
         except NotEnoughData as error:
             told = str(error)
             found = replace(found, sentence=f"These data cannot be tested: {told}.")
@@ -237,10 +242,14 @@ def _testable(
     restated: bool = False,
 ) -> Diagnosis:
     """The diagnosis of data that can be used; ``restated`` with another law than was stated."""
-    whole = found
     number = plural(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = fit_baseline(found.plant, session.recordings)
+    if read := fit_baseline_as_read(found.plant, session.recordings, evidence, base):
+        ahead, recordings, evidence, base = read
+        session = Session(recordings, session.plant, session.replicates)
+        found = replace(found, data={**found.data, "input_ahead": ahead})
+    whole = found
     found, replays = replay_base(found, evidence, base, asked.surrogates)
     if replays is None:
         return base_alone(found, evidence, base)

@@ -20,6 +20,7 @@ from ..screening.block_gains import (
     without_the_best,
 )
 from ..screening.candidates import Candidate
+from ..screening.evenness import MOST_UNEVEN
 from ..screening.model import LEAST_GIVEN, Model
 from ..screening.screen import Score
 from .homogeneity import unevenness
@@ -61,9 +62,6 @@ to 9."""
 MOST_AGAIN: Final = 8.0
 """A cause gains less than so many times on rows held out what it explains of those it was fitted
 to."""
-MOST_UNEVEN: Final = 0.3
-"""What strengths of their own by kind of recording may add, as a share of a gain: with more
-the effect imitates something else."""
 OUT_OF_RANGE: Final = float("inf")
 """Stands for that where its shape says that it is something else; no strengths add as much."""
 
@@ -261,8 +259,8 @@ def judge(
     elif uneven > MOST_UNEVEN:
         by_blocks = False
         reason = (
-            "imitates something else: strengths of their own by kind of recording would add "
-            f"{100 * uneven:.0f} % to its gain"
+            "imitates something else: strengths of their own by kind of recording or pace would "
+            f"add {100 * uneven:.0f} % to its gain"
         )
     worth = log_gain(base, model) - PENALTY * score.candidate.parameters
     return Trial(

@@ -1,4 +1,4 @@
-"""Whether an effect is as strong in one kind of recording as in another."""
+"""Whether an effect is as strong in one kind of recording as in another, and at every pace."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..data.evidence import Evidence, Plan
+from ..screening.evenness import added_power, by_pace
 from ..screening.model import Model
 from ..screening.regression import project
 
@@ -15,18 +16,18 @@ __all__ = ["unevenness"]
 
 SEEN: Final = 0.02
 """Kinds of recording in which an effect shows less than this share of itself say nothing of it."""
-COMMON: Final = 1e-2
-"""Directions below this share of the strongest one are the strength that all kinds have in common,
-which is fitted already."""
 
 
 def unevenness(base: Model, model: Model, contributed: FloatArray) -> float:
-    """What a strength of its own in each kind of recording would add to an effect's gain.
+    """What strengths of its own by kind of recording, or by pace, would add to an effect's gain.
 
     The cause of a residual has one strength everywhere; what only resembles it is stronger in one
-    experiment and weaker, or of the other sign, in the next. The effect's contribution, kind by
-    kind, is put beside everything that was fitted. From the power that this takes off the fitted
-    rows is subtracted what residuals correlated within blocks of 1 s let expect of a true cause.
+    experiment and weaker, or of the other sign, in the next. And it has one strength whether it
+    comes and goes fast or slowly: noise of the readings that a controller answers is in the effort
+    and in the residual alike, as a lag would be that holds no slow effort up. The effect's
+    contribution, part by part, is put beside everything that was fitted. From the power that this
+    takes off the fitted rows is subtracted what residuals correlated within blocks of 1 s let
+    expect of a true cause.
 
     Parameters
     ----------
@@ -38,21 +39,16 @@ def unevenness(base: Model, model: Model, contributed: FloatArray) -> float:
     Returns
     -------
     float
-        As a share of what the effect itself takes off; 0 where there is one kind alone.
+        As a share of what the effect itself takes off, the greater of the two; 0 where there are no
+        two parts.
     """
     evidence = base.evidence
-    fit = evidence.fitted
     gained = base.power - model.power
-    parts = _by_kind(evidence, contributed)
-    if parts.shape[1] < 2 or gained <= 0.0:
+    if gained <= 0.0:
         return 0.0
-    beside = project(model.columns, Plan(fit, fit))
-    left, sizes, _ = np.linalg.svd(beside.off(parts[fit]), full_matrices=False)
-    directions = left[:, sizes > COMMON * sizes[0]] if sizes[0] > 0.0 else left[:, :0]
-    residual = beside.off(model.residual[fit])
-    pushed = directions.T @ residual
-    # Twice what is expected by chance: the sum is of few squares and scatters as much.
-    return float(pushed @ pushed - 2.0 * _by_chance(evidence, directions, residual)) / gained
+    beside = project(model.columns, Plan(evidence.fitted, evidence.fitted))
+    parts = (_by_kind(evidence, contributed), by_pace(evidence, contributed))
+    return max(added_power(evidence, beside, model.residual, each) for each in parts) / gained
 
 
 def _by_kind(evidence: Evidence, contributed: FloatArray) -> FloatArray:
@@ -62,11 +58,3 @@ def _by_kind(evidence: Evidence, contributed: FloatArray) -> FloatArray:
     shown = np.flatnonzero(power > SEEN * power.sum())
     parts: FloatArray = np.where(kind[:, None] == shown, contributed[:, None], 0.0)
     return parts
-
-
-def _by_chance(evidence: Evidence, directions: FloatArray, residual: FloatArray) -> float:
-    """Power in some directions that residuals of this size have, blocks being independent."""
-    block = evidence.cells.block[evidence.fitted]
-    pushes = np.zeros((int(block.max()) + 1, directions.shape[1]))
-    np.add.at(pushes, block, directions * residual[:, None])
-    return float(np.sum(pushes**2))
