@@ -603,6 +603,7 @@ def test_findings_hold_every_field_that_others_build_on() -> None:
             assert set(parameter) == {"value", "ci95", "unit", "at_bound"}
     assert set(found["data"]) == {
         "checks", "split", "replicates", "residual", "hashes", "noise", "chosen", "complete",
+        "input_ahead",
         "through",
     }  # fmt: skip
     assert [each["recording"] for each in found["data"]["noise"]] == ["recording 1", "recording 2"]
