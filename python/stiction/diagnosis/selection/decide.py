@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ...catalogue import EffectRecord
 from ..defaults import SMALLEST
 from ..screening.block_gains import (
     TOUCHED,
@@ -62,6 +63,8 @@ to 9."""
 MOST_AGAIN: Final = 8.0
 """A cause gains less than so many times on rows held out what it explains of those it was fitted
 to."""
+SWINGS: Final = "second mass"
+"""Hook of effects whose mass swings behind the effort."""
 OUT_OF_RANGE: Final = float("inf")
 """Stands for that where its shape says that it is something else; no strengths add as much."""
 
@@ -147,6 +150,11 @@ class Trial:
     def name(self) -> str:
         """Name of the effect."""
         return self.candidate.name
+
+
+def comes_late(record: EffectRecord) -> bool:
+    """Whether an effect is a lag of any kind, or a mass that swings behind the effort."""
+    return record.late or record.friction_lags or SWINGS in record.hooks
 
 
 def degeneracy(base: Model, model: Model) -> str:
@@ -240,7 +248,8 @@ def judge(
             "that matter"
         )
     open_ = not reason or by_blocks
-    uneven = unevenness(base, model, contributed) if open_ else 0.0
+    paced = comes_late(score.candidate.record)
+    uneven = unevenness(base, model, contributed, paced=paced) if open_ else 0.0
     partly = partial_loss(score.candidate, model, strength)
     beyond = partly or out_of_its_range(score.candidate, model)
     # What many fitted blocks leave no doubt of, and what decides cannot judge.
@@ -250,7 +259,7 @@ def judge(
         and gain >= 0.0
         and not beyond
         and (gain_known or not in_few_blocks(base, contributed))
-        and unevenness(base, model, contributed) <= MOST_UNEVEN
+        and unevenness(base, model, contributed, paced=paced) <= MOST_UNEVEN
     )
     beyond = beyond if open_ else ""
     if beyond:

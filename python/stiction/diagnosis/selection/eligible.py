@@ -14,6 +14,7 @@ from ..data.noise import input_noise
 from ..records import CandidateRow
 from ..screening.candidates import FALL, Candidate, candidates, present, scales_of
 from ..screening.model import Model
+from .decide import SWINGS
 from .fewer import FALLS
 from .search import Search
 
@@ -21,8 +22,6 @@ __all__ = ["eligible_candidates"]
 
 AT_THE_DRIVE: Final = frozenset({"input map", "input delay", "input lag"})
 """Hooks of effects that a machine without a drive cannot have."""
-SWINGS: Final = "second mass"
-"""Hook of effects whose mass swings faster than the samples of a servo show."""
 MUCH_NOISE: Final = 0.3
 """Noise of a logged effort over what is left from which on it looks like friction by it."""
 

@@ -18,16 +18,16 @@ SEEN: Final = 0.02
 """Kinds of recording in which an effect shows less than this share of itself say nothing of it."""
 
 
-def unevenness(base: Model, model: Model, contributed: FloatArray) -> float:
+def unevenness(base: Model, model: Model, contributed: FloatArray, *, paced: bool = False) -> float:
     """What strengths of its own by kind of recording, or by pace, would add to an effect's gain.
 
     The cause of a residual has one strength everywhere; what only resembles it is stronger in one
-    experiment and weaker, or of the other sign, in the next. And it has one strength whether it
-    comes and goes fast or slowly: noise of the readings that a controller answers is in the effort
-    and in the residual alike, as a lag would be that holds no slow effort up. The effect's
-    contribution, part by part, is put beside everything that was fitted. From the power that this
-    takes off the fitted rows is subtracted what residuals correlated within blocks of 1 s let
-    expect of a true cause.
+    experiment and weaker, or of the other sign, in the next. And what comes late or swings does so
+    whether efforts come and go fast or slowly: noise of the readings that a controller answers is
+    in the effort and in the residual alike, as a lag would be that holds no slow effort up. The
+    effect's contribution, part by part, is put beside everything that was fitted. From the power
+    that this takes off the fitted rows is subtracted what residuals correlated within blocks of 1 s
+    let expect of a true cause.
 
     Parameters
     ----------
@@ -35,6 +35,9 @@ def unevenness(base: Model, model: Model, contributed: FloatArray) -> float:
         Without and with the effect.
     contributed : numpy.ndarray, shape (n,)
         What the effect explains of each row that may be looked at, weighted.
+    paced : bool
+        Ask by pace as well. Of what neither comes late nor swings the form is mostly no more than
+        near: a dead zone with 43 % of gain on held-out rows came to .39.
 
     Returns
     -------
@@ -47,7 +50,9 @@ def unevenness(base: Model, model: Model, contributed: FloatArray) -> float:
     if gained <= 0.0:
         return 0.0
     beside = project(model.columns, Plan(evidence.fitted, evidence.fitted))
-    parts = (_by_kind(evidence, contributed), by_pace(evidence, contributed))
+    parts = [_by_kind(evidence, contributed)]
+    if paced:
+        parts.append(by_pace(evidence, contributed))
     return max(added_power(evidence, beside, model.residual, each) for each in parts) / gained
 
 
