@@ -19,6 +19,7 @@ from .._support.products import on_one_thread
 from .._support.progress import phase
 from .._support.wording import plural
 from .._support.workers import with_workers
+from ..catalogue import effects
 from ..errors import InputError, NotEnoughData
 from ..fitting.sampling import reading_words
 from ..plant import Plant
@@ -62,6 +63,9 @@ NOT_DRIVEN: Final = (
     "known to which anything could be compared; add a recording that is driven, or the column that "
     "drives."
 )
+
+LATE = frozenset(record.name for record in effects() if record.late)
+"""Effects by which an input acts later than its rows say."""
 
 _Shot = tuple[Evidence, Model, list[Known]]
 """Windows, the base over them, and whence effects are begun as well."""
@@ -240,12 +244,18 @@ def _testable(
     checks: Sequence[tuple[str, Check]],
     *,
     restated: bool = False,
+    held: bool = False,
 ) -> Diagnosis:
-    """The diagnosis of data that can be used; ``restated`` with another law than was stated."""
+    """The diagnosis of data that can be used; ``restated`` with another law than was stated.
+
+    ``held`` takes each row to hold its input to the next, whatever the base says.
+    """
     number = plural(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = fit_baseline(found.plant, session.recordings)
-    if read := fit_baseline_as_read(found.plant, session.recordings, evidence, base):
+    as_given = found, session
+    read = None if held else fit_baseline_as_read(found.plant, session.recordings, evidence, base)
+    if read is not None:
         ahead, recordings, evidence, base = read
         session = Session(recordings, session.plant, session.replicates)
         found = replace(found, data={**found.data, "input_ahead": ahead})
@@ -317,6 +327,9 @@ def _testable(
     # Every decision is taken: now, and once, the rows that test.
     conclusion = look_otherwise(concluded(look), look, asked, concluded)
     told = conclusion.diagnosis()
+    if read is not None and told.success and any(each.name in LATE for each in told.effects):
+        # Ahead and late is neither: a base that lacks a cause had bent its clock.
+        return _testable(*as_given, asked, checks, restated=restated, held=True)
     if restated or not told.better_law or not told.success:
         return told
     return diagnose_again_at_the_end(told, conclusion, of)
