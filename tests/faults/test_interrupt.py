@@ -128,9 +128,11 @@ def test_old_files_or_new_ones_are_there_after_a_signal(
     assert ended.status in (0, 130, -signal.SIGTERM), ended
     assert "Traceback" not in ended.error
     now = contents(out)
-    assert set(now) >= set(good(verb))
+    # The best so far, which Ctrl-C ends with, has the figures that it can have.
+    cut = {name for name in good(verb) if ended.status == 130 and name.startswith("figures")}
+    assert set(now) >= set(good(verb)) - cut
     # What was being written beside when the process was ended is no file of the answer.
-    lay({name: now[name] for name in good(verb)}, tmp_path / "answer")
+    lay({name: now[name] for name in good(verb) if name in now}, tmp_path / "answer")
     assert_whole(tmp_path / "answer")
 
 
