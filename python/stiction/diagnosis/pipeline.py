@@ -21,7 +21,6 @@ from .._support.wording import plural
 from .._support.workers import with_workers
 from ..catalogue import effects
 from ..errors import InputError, NotEnoughData
-from ..fitting.sampling import reading_words
 from ..plant import Plant
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
@@ -41,13 +40,13 @@ from .otherwise import look_otherwise
 from .restated import diagnose_again_at_the_end, diagnose_again_early, is_outdone
 from .screening.base import (
     fit_baseline,
-    fit_baseline_as_read,
     fit_joint_baseline,
     fit_simulated_baseline,
     fit_wider_baseline,
 )
 from .screening.candidates import excluded_names
 from .screening.model import Known, Model
+from .screening.sampling import fit_baseline_as_read, reading_words
 from .searched import Asked, Searched, replay_base, search_again
 from .selection.laws import law_names
 from .selection.search import Search
@@ -254,7 +253,7 @@ def _testable(
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = fit_baseline(found.plant, session.recordings)
     as_given = found, session
-    read = None if held else fit_baseline_as_read(found.plant, session.recordings, evidence, base)
+    read = None if held else fit_baseline_as_read(found.plant, session.recordings, base)
     if read is not None:
         ahead, recordings, evidence, base = read
         session = Session(recordings, session.plant, session.replicates)

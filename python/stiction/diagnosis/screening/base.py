@@ -14,15 +14,12 @@ from ...fitting.forms import Through, astray, wider_of, windows_of
 from ...fitting.minimise import MOST_EVALUATIONS
 from ...fitting.pushes import Watch
 from ...fitting.rows import count_by
-from ...fitting.sampling import fit_as_read
 from ...fitting.sign import sign_error
 from ...fitting.solve import fit_remainder, second_pass
 from ...plant import Plant
 from ...recording import Recording
-from ..data.evidence import Evidence, Plan
-from .evenness import MOST_UNEVEN, added_power, by_pace
+from ..data.evidence import Evidence
 from .model import Known, Model, fit_model
-from .regression import project
 
 __all__ = [
     "fit_baseline",
@@ -32,8 +29,6 @@ __all__ = [
     "fit_wider_baseline",
 ]
 
-COUNTS: Final = 0.01
-"""What an offset of timing takes off, as a share of what is left, from which on it counts."""
 LOST: Final = 1e-3
 """An inertia that shrinks to this share of what the plant states, or of what the motion told at
 first, is gone."""
@@ -112,65 +107,6 @@ def _second(plant: Plant, first: FirstPass[Evidence]) -> tuple[Evidence, Model]:
     if not solution.interrupted:
         _refuse_what_does_not_move(evidence, first.start, base, plant)
     return evidence, base
-
-
-def fit_baseline_as_read(
-    plant: Plant, recordings: Sequence[Recording], evidence: Evidence, base: Model
-) -> tuple[float, list[Recording], Evidence, Model] | None:
-    """The base of an input as it was read, where its rows do not hold it; None elsewhere.
-
-    Parameters
-    ----------
-    plant : Plant
-        As it is stated.
-    recordings : sequence of Recording
-    evidence : Evidence
-    base : Model
-        Of an input that each row holds to the next.
-
-    Returns
-    -------
-    (float, list of Recording, Evidence, Model) or None
-        By how many samples each row was read ahead, and the recordings with what acts from each row
-        on.
-    """
-    if base.solution.interrupted or not _is_of_reading(base):
-        return None
-    try:
-        read = fit_as_read(
-            plant,
-            recordings,
-            (evidence, base),
-            lambda others: fit_baseline(plant, others),
-            lambda found: found[1].nuisances.timing,
-        )
-    except InputError:
-        return None
-    return None if read is None else (read[0], read[1], *read[2])
-
-
-def _is_of_reading(base: Model) -> bool:
-    """Whether the offset of timing of a base is one of the log: it counts, and is so at every pace.
-
-    What swings on a shaft is ahead of the effort as well, and the more the faster.
-    """
-    evidence, nuisances = base.evidence, base.nuisances
-    if not nuisances.timing < 0.0:
-        return False
-    there, fit = base.residual, evidence.fitted
-    shifted = evidence.residual(base.plant, replace(nuisances, timing=0.0)) - there
-    columns, place = base.columns.copy(), len(base.solution.variables.paths)
-    columns[:, place] = 0.0
-    others = project(columns, Plan(fit, fit))
-    own, left = others.off(shifted[fit]), others.off(there[fit])
-    gained = float(own @ own)
-    if not gained > COUNTS * float(left @ left):
-        return False
-    # An offset at its bound is not fitted: what all paces want of it alike is no unevenness.
-    columns[:, place] = shifted
-    beside = project(columns, Plan(fit, fit))
-    uneven = added_power(evidence, beside, there, by_pace(evidence, shifted))
-    return uneven <= MOST_UNEVEN * gained
 
 
 def fit_wider_baseline(
