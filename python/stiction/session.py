@@ -28,7 +28,7 @@ from .recording.names import names_of
 from .recording.recording import recordings_of
 from .recording.session_clock import ages_of, starts_of
 from .recording.split import BLOCK_S, EDGE_S, Split, split
-from .session_entries import Entry, beside, entries_of
+from .session_entries import Entry, all_faults, beside, entries_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,6 @@ MOST_WITHIN: Final = 8
 """Recordings whose names stand within a figure of the session."""
 
 _TABLES = ("plant", "columns", "recordings")
-_FAULTS_TOLD = 8
 
 
 @explain_constructor
@@ -306,7 +305,7 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
             # What a pattern finds need not be a recording; what is named has to be.
             (left_out if entry.found else faults).append(str(error))
     if faults or not recordings:
-        raise InputError(_together(source, faults or left_out))
+        raise InputError(all_faults(source, faults or left_out))
     kept = {index: place for place, index in enumerate(recordings)}
     replicates = {
         kept[index]: kept[of]
@@ -364,15 +363,6 @@ def both_of(plant: Any, session: Any, where: str) -> tuple[Any, Any]:
         if plant is None:
             raise InputError('session: plant is missing; write plant = "plant.toml", or give one')
     return plant, session
-
-
-def _together(source: str, faults: Sequence[str]) -> str:
-    """All that is wrong with the recordings, in one sentence."""
-    if len(faults) == 1:
-        return faults[0]
-    told = "; ".join(f"({k}) {fault}" for k, fault in enumerate(faults[:_FAULTS_TOLD], 1))
-    more = f"; and {len(faults) - _FAULTS_TOLD} more" if len(faults) > _FAULTS_TOLD else ""
-    return f"{source}: {len(faults)} recordings cannot be read: {told}{more}"
 
 
 def _replicates(path: Path, entries: Sequence[Entry]) -> dict[int, int]:

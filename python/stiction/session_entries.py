@@ -17,7 +17,7 @@ from .plant.plant_file import section
 from .recording import SETTINGS
 from .recording.recording import SPLIT_ROLES
 
-__all__ = ["Entry", "beside", "entries_of"]
+__all__ = ["Entry", "all_faults", "beside", "entries_of"]
 
 _KEYS: Final = (
     *("file", "from", "to", "role", "kind", "start_s", "cold", "replicate_of", "columns"),
@@ -32,6 +32,7 @@ _OTHERS: Final = {
 _WILD: Final = re.compile(r"[*?]|\[[^\]]+\]")
 _ROW: Final = re.compile(r"row ([1-9]\d{0,14})")
 _MOST_FILES: Final = 10_000
+_FAULTS_TOLD: Final = 8
 
 
 @dataclass(frozen=True)
@@ -246,3 +247,13 @@ def beside(path: Path, named: str, where: str) -> Path:
         return (path.parent / named).resolve()
     except (OSError, RuntimeError, ValueError) as error:
         raise InputError(f"{where} = {named!r} is not a path ({error}); mend it") from None
+
+
+def all_faults(source: str, faults: Sequence[str]) -> str:
+    """All that is wrong with the recordings of a session, in one sentence, each fault once."""
+    told = list(dict.fromkeys(faults))
+    if len(told) == 1:
+        return told[0]
+    shown = "; ".join(f"({k}) {fault}" for k, fault in enumerate(told[:_FAULTS_TOLD], 1))
+    more = f"; and {len(told) - _FAULTS_TOLD} more" if len(told) > _FAULTS_TOLD else ""
+    return f"{source}: {len(faults)} recordings cannot be read: {shown}{more}"

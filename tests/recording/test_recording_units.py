@@ -51,7 +51,8 @@ def test_both_micro_signs_and_both_centred_dots_are_read() -> None:
 @pytest.mark.parametrize(
     ("written", "unit"),
     [("°", "deg"), ("\N{MASCULINE ORDINAL INDICATOR}", "deg"), ("°C", "degC"), ("°/s", "deg/s"),
-     ("U/min", "rpm"), ("1/min", "rpm"), ("min⁻¹", "rpm")],
+     ("U/min", "rpm"), ("1/min", "rpm"), ("min⁻¹", "rpm"),
+     ("N*m", "N·m"), ("N.m", "N·m"), ("mN m", "mNm")],
 )  # fmt: skip
 def test_signs_that_instruments_print_are_read(written: str, unit: str) -> None:
     assert find_unit(written, "x") is UNITS[unit]

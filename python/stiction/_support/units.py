@@ -108,6 +108,8 @@ _LOOK_ALIKES = str.maketrans(
 )
 _SIGNS: Final = {
     **{"°": "deg", "°/s": "deg/s", "°C": "degC"},
+    **dict.fromkeys(("N*m", "N.m", "N m", "N-m"), "N·m"),
+    **dict.fromkeys(("mN·m", "mN*m", "mN.m", "mN m", "mN-m"), "mNm"),
     **dict.fromkeys(("U/min", "1/min", "r/min", "rev/min", "min⁻¹", "min^-1"), "rpm"),
 }
 """Other ways in which instruments write a unit."""

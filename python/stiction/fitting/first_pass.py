@@ -21,6 +21,7 @@ from .forms import (
     astray,
     followable,
     horizon_of,
+    may_be_astray,
     shows_its_ring,
     stiffen,
     wider_of,
@@ -257,8 +258,11 @@ def _simulated(
     """What is known, fitted on by what is simulated where the weak form does not do."""
     seen, found, start = known.seen, known.solution, known.start
     servo = plant.servo
-    tried = None if windows is False else windows_of(found.plant, seen.forms, seen.train)
-    horizon = tried or horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
+    horizon = horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
+    tried = None
+    asked = horizon is None and windows is not False
+    if asked and (windows or may_be_astray(found.plant, found.nuisances, seen.train)):
+        tried = horizon = windows_of(found.plant, seen.forms, seen.train)
     if horizon is not None or servo:
         phase(_logger, "fitting it again, simulated")
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -20,7 +19,7 @@ from ..recording import Columns, Recording, Table, read_table
 from ..recording.names import names_of
 from ..recording.recording import recording_of, recordings_of
 from ..recording.signals import read_signals
-from ..session_entries import Entry, beside, entries_of
+from ..session_entries import Entry, all_faults, beside, entries_of
 from .robot import Joint, Robot
 
 __all__ = ["RobotSession", "Run", "load_session", "robot_of"]
@@ -28,7 +27,6 @@ __all__ = ["RobotSession", "Run", "load_session", "robot_of"]
 _TABLES: Final = ("plant", "columns", "recordings")
 _SHARED: Final = ("time", "temperature")
 _PAYLOAD: Final = "payload_kg"
-_FAULTS_TOLD: Final = 8
 HEAVIEST: Final = 1e6
 """kg; no arm carries that."""
 
@@ -176,7 +174,7 @@ def load_session(path: str | Path) -> RobotSession:
         except InputError as error:
             (left_out if entry.found else faults).append(str(error))
     if faults or not runs:
-        raise InputError(_together(str(path), faults or left_out))
+        raise InputError(all_faults(str(path), faults or left_out))
     assumed = filter(None, (open_marks(each) for each in (file, path)))
     return RobotSession(robot, tuple(runs), tuple(left_out), tuple(assumed))
 
@@ -205,12 +203,3 @@ def _run(robot: Robot, entry: Entry, shared: dict[str, Any], where: str) -> Run:
 def _of_joint(table: Table, joint: Joint, common: Columns, labels: dict[str, Any]) -> Recording:
     columns = Columns({**common, **joint.columns}, where=joint.columns.where)
     return recording_of(table, columns, drive=joint.input, motion=joint.motion, **labels)
-
-
-def _together(source: str, faults: Sequence[str]) -> str:
-    """All that is wrong with the recordings, in one sentence."""
-    if len(faults) == 1:
-        return faults[0]
-    told = "; ".join(f"({k}) {fault}" for k, fault in enumerate(faults[:_FAULTS_TOLD], 1))
-    more = f"; and {len(faults) - _FAULTS_TOLD} more" if len(faults) > _FAULTS_TOLD else ""
-    return f"{source}: {len(faults)} recordings cannot be read: {told}{more}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError, NotEnoughData
 from ...fitting.first_pass import WORTH_WIDER, Along, FirstPass, first_pass, remaining_share
-from ...fitting.forms import Through, astray, wider_of, windows_of
+from ...fitting.forms import Through, astray, may_be_astray, wider_of, windows_of
 from ...fitting.minimise import MOST_EVALUATIONS
 from ...fitting.pushes import Watch
 from ...fitting.rows import count_by
@@ -196,6 +196,7 @@ def fit_simulated_baseline(
         for model in (final, *others)
         if model.plant.effects != plant.effects
         and windows_of(model.plant, evidence.forms, evidence.train) is not None
+        and may_be_astray(model.plant, model.nuisances, evidence.train)
     ]
     if horizon is None or not begun:
         return None

@@ -60,7 +60,11 @@ WITHIN_NOISE: Final = "lies within the noise of the input"
 """So narrow a dead zone takes noise off the log where the machine coasts at an input of 0."""
 BETWEEN_STAMPS: Final = "is over between two readings"
 """What builds up over so short a way behind a turn is where the machine turned."""
-OF_READING: Final = (BELOW_A_KERNEL, WITHIN_NOISE, BETWEEN_STAMPS)
+ABOVE_SAMPLES: Final = "sets a resonance above half the rate of the samples"
+"""Of what swings so fast no reading tells."""
+SHOWN: Final = 0.5
+"""Share of the rate of the samples up to which they show an oscillation (Nyquist)."""
+OF_READING: Final = (BELOW_A_KERNEL, WITHIN_NOISE, BETWEEN_STAMPS, ABOVE_SAMPLES)
 """What imitates a reading, and nothing that is missing."""
 REACH_OF_NOISE: Final = 3.0
 """Standard deviations that white noise stays within."""
@@ -77,10 +81,13 @@ def out_of_its_range(candidate: Candidate, model: Model) -> str:
     the friction of the two differs however slowly that comes about. And what is late and over below
     the slowest speeds is no lag of sliding friction: there the curve of the contact is off. A dead
     zone that noise of the input does not leave is a filter of that noise, and a way that is over
-    between two stamps behind most turns is where the machine turned between them.
+    between two stamps behind most turns is where the machine turned between them. What swings
+    faster than samples can show is not seen to swing.
     """
     if narrow := _within_noise(candidate, model):
         return f"{narrow} {WITHIN_NOISE}"
+    if fast := _swings_unseen(candidate, model):
+        return f"{fast} {ABOVE_SAMPLES}"
     late = any(shape.scale == "kernel" for shape in candidate.record.shapes)
     effect = next(each for each in model.plant.effects if each.name == candidate.name)
     for shape in candidate.record.shapes:
@@ -112,6 +119,19 @@ def _within_noise(candidate: Candidate, model: Model) -> str:
     reach = REACH_OF_NOISE * float(np.median(noises))
     widest = {w: abs(plant.gain * _value(candidate, model, w)) for w in widths}
     return next((name for name, width in widest.items() if width <= reach), "")
+
+
+def _swings_unseen(candidate: Candidate, model: Model) -> str:
+    """The gain that sets a resonance which no samples show, "" where there is none."""
+    record = candidate.record
+    if not record.swings:
+        return ""
+    (gain,) = record.gains
+    compliance, share = (_value(candidate, model, each) for each in (gain, "inertia_share"))
+    softness = compliance * share * (1.0 - share) * model.plant.inertia
+    spacing = min(form.dt for form in model.evidence.forms)
+    fastest = 2.0 * math.pi * SHOWN / spacing
+    return gain if softness * fastest**2 < 1.0 else ""
 
 
 def _is_over_between(way: float, evidence: Evidence) -> bool:
