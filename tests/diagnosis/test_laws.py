@@ -87,12 +87,14 @@ def test_rows_that_test_take_a_law_away_that_is_surely_worse_there() -> None:
     own, worse, better = (size * source.standard_normal(4000) for size in (1.0, 1.5, 0.7))
     ones = np.ones(4000)
     test = HeldOut((own, worse, better), ones, ones, cells(np.arange(4000) // 100), ())
-    gained = {"beside": 0.8, "z": 9.0}
+    gained = {"beside": 0.8, "z": 9.0, "counts": True}
     first = replace(rival("load_dependent", 1.0), **gained)
     second = replace(rival("dahl", 1.0), **{**gained, "beside": 0.5})
     assert laws.better_laws([first, second], 0, None, 0) == [first]
     assert laws.better_laws([first, second], 0, test, 0) == [second]
     assert laws.better_laws([first], 0, test, 0) == []
+    # What it removes beside the friction is too little to be worth a name.
+    assert laws.better_laws([replace(first, counts=False)], 0, None, 0) == []
     # Nor is it named beside another one.
     near = replace(first, beside=0.5)
     assert laws.better_laws([near, second], 0, None, 0) == [near, second]
@@ -106,7 +108,7 @@ def test_of_laws_that_leave_as_little_the_simpler_one_is_named() -> None:
     """A law that holds another one within it leaves a little less of what that one made."""
 
     simple, holding, worse = (
-        replace(rival(law, 1.0), beside=beside, z=9.0)
+        replace(rival(law, 1.0), beside=beside, z=9.0, counts=True)
         for law, beside in (("dahl", 0.9990), ("leuven", 0.9991), ("coulomb", 0.95))
     )
     assert worse.parameters < simple.parameters < holding.parameters

@@ -42,7 +42,7 @@ def sooner(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def rival(law: str, beside: float) -> Rival:
-    return Rival(law, False, model(paths=()), beside=beside, z=5.0)
+    return Rival(law, False, model(paths=()), beside=beside, z=5.0, counts=True)
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,12 @@ from .screening.base import (
 )
 from .screening.candidates import excluded_names
 from .screening.model import Known, Model
-from .screening.sampling import fit_baseline_as_read, reading_words
+from .screening.sampling import (
+    AsRead,
+    fit_baseline_as_read,
+    fit_baseline_read,
+    reading_words,
+)
 from .searched import Asked, Searched, replay_base, search_again
 from .selection.laws import law_names
 from .selection.search import Search
@@ -243,21 +248,28 @@ def _testable(
     checks: Sequence[tuple[str, Check]],
     *,
     restated: bool = False,
-    held: bool = False,
+    ahead: float | None = None,
 ) -> Diagnosis:
     """The diagnosis of data that can be used; ``restated`` with another law than was stated.
 
-    ``held`` takes each row to hold its input to the next, whatever the base says.
+    ``ahead`` is by how many samples the input is read ahead, 0 where each row holds it to the next;
+    as the base says without it.
     """
     number = plural(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = fit_baseline(found.plant, session.recordings)
     as_given = found, session
-    read = None if held else fit_baseline_as_read(found.plant, session.recordings, base)
+    read = (
+        fit_baseline_as_read(found.plant, session.recordings, base)
+        if ahead is None
+        else fit_baseline_read(found.plant, session.recordings, ahead)
+        if ahead
+        else None
+    )
     if read is not None:
-        ahead, recordings, evidence, base = read
+        taken, recordings, evidence, base = read
         session = Session(recordings, session.plant, session.replicates)
-        found = replace(found, data={**found.data, "input_ahead": ahead})
+        found = replace(found, data={**found.data, "input_ahead": taken})
     whole = found
     found, replays = replay_base(found, evidence, base, asked.surrogates)
     if replays is None:
@@ -326,12 +338,31 @@ def _testable(
     # Every decision is taken: now, and once, the rows that test.
     conclusion = look_otherwise(concluded(look), look, asked, concluded)
     told = conclusion.diagnosis()
-    if read is not None and told.success and any(each.name in LATE for each in told.effects):
-        # Ahead and late is neither: a base that lacks a cause had bent its clock.
-        return _testable(*as_given, asked, checks, restated=restated, held=True)
+    if ahead is None and told.success:
+        by = _read_otherwise(session, read, told, conclusion)
+        if by is not None:
+            return _testable(*as_given, asked, checks, restated=restated, ahead=by)
     if restated or not told.better_law or not told.success:
         return told
     return diagnose_again_at_the_end(told, conclusion, of)
+
+
+def _read_otherwise(
+    session: Session, read: AsRead | None, told: Diagnosis, conclusion: Conclusion
+) -> float | None:
+    """By how many samples the input is to be read ahead, beside what was found; None for as it was.
+
+    A base that lacks a cause bends its clock: it may seem ahead, and then something late is named
+    beside that, or hide that the log is.
+    """
+    if read is not None:
+        # Ahead and late is neither.
+        return 0.0 if any(each.name in LATE for each in told.effects) else None
+    if not told.effects:
+        return None
+    final = conclusion.final_selection.models[-1]
+    found = fit_baseline_as_read(final.plant, session.recordings, final)
+    return None if found is None else found.ahead
 
 
 def _first_look(

@@ -266,8 +266,9 @@ def _simulated(
     if horizon is not None or servo:
         phase(_logger, "fitting it again, simulated")
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
-        # Along the measured motion a servo that is not yet understood may lead anywhere.
-        begun = [found.plant, start] if servo else [found.plant]
+        # Along the measured motion a servo that is not yet understood may lead anywhere, and along
+        # readings that lead it astray a contact that yields ends in a valley of these.
+        begun = [found.plant, start] if servo or plant.friction.springy else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
         fitted = launch(begun, paths, other.train, most=most)
         if servo:

@@ -24,6 +24,7 @@ from ...fitting.recording_starts import with_turns
 from ...fitting.rows import require_motion
 from ...plant.parameter import Parameter
 from ...plant.stated import Friction
+from ...residual.finite import finite
 from ..adequacy.lone import Lone
 from ..adequacy.within import event_power_ratio
 from ..data.gain import Gain, HeldOut, gain_of
@@ -34,6 +35,7 @@ from ..screening.candidates import scales_of
 from ..screening.model import LEAST_GIVEN, Model, fit_model, likeliest_of
 from .choose import DECIDED_Z
 from .left_open import OF_A_LAW
+from .rounds import friction_of
 from .search import Search
 
 __all__ = [
@@ -108,6 +110,8 @@ class Rival:
         with those of them that are no part of any law, where that is more.
     z : float
         That over its standard error.
+    counts : bool
+        Whether what it removes is as much, beside the friction, as is worth a name.
     kept : tuple of str
         Effects that it needs for that.
     """
@@ -117,13 +121,14 @@ class Rival:
     model: Model | None
     beside: float = 0.0
     z: float = 0.0
+    counts: bool = False
     kept: tuple[str, ...] = ()
     why: str = ""
 
     @property
     def better(self) -> bool:
         """Whether it explains clearly more than what was named."""
-        return self.beside > WORTH_MORE and self.z > DECIDED_Z
+        return self.counts and self.beside > WORTH_MORE and self.z > DECIDED_Z
 
     @property
     def as_good(self) -> bool:
@@ -260,8 +265,14 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
     An offset or a ripple has nothing to do with the law: a rival that lacks it would be outdone by
     effects, whatever its friction is worth.
     """
-    beside, z = heldout_gain(final, model)
-    alone = replace(rival, beside=beside, z=z)
+    least = selection.smallest * friction_of(final.evidence, selection.models[0])
+
+    def of(other: Model) -> Rival:
+        beside, z = heldout_gain(final, other)
+        removed = max(beside, 0.0) * float(np.mean(finite(final.residual) ** 2))
+        return replace(rival, beside=beside, z=z, counts=math.sqrt(removed) >= least)
+
+    alone = of(model)
     named = {
         choice.winner.name
         for choice in selection.choices
@@ -282,11 +293,11 @@ def _beside(final: Model, model: Model, rival: Rival, selection: Search) -> Riva
         # What is known of the law alone stays.
         selection.interrupted = True
         return alone
-    beside, z = heldout_gain(final, found)
+    together = of(found)
     # Fitted anew beside another law an effect may run away: a dead band as wide as every input.
-    if beside <= alone.beside or found.relative_input_power <= LEAST_GIVEN:
+    if together.beside <= alone.beside or found.relative_input_power <= LEAST_GIVEN:
         return alone
-    return replace(rival, beside=beside, z=z, kept=tuple(effect.name for effect in kept))
+    return replace(together, kept=tuple(effect.name for effect in kept))
 
 
 def better_laws(rivals: Sequence[Rival], own: int, test: HeldOut | None, seed: int) -> list[Rival]:

@@ -203,11 +203,15 @@ def leave_zero_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
     All of its numbers together may help beyond doubt, and they may help to mend what the form of
     the law or of a first cause leaves: of eight wrong second and third names every number of seven
     reached 0, at strengths of 9 at most where these were asked, and of three first ones two were
-    wrong. What blocks leave no doubt of needs no number.
+    wrong. What blocks leave no doubt of needs no number, where the fit tells it from all others: of
+    a gain that these make up for blocks know nothing.
     """
     final = selection.models[-1]
     found = list(causes)
     for place, (choice, cause) in enumerate(zip(selection.choices, causes, strict=True)):
-        if cause.doubtful and final.strength(choice.winner.candidate) < SURE:
+        candidate = choice.winner.candidate
+        if cause.doubtful and not (
+            final.strength(candidate) >= SURE and final.determines(candidate)
+        ):
             found[place] = replace(cause, decided=False, doubt=MAY_BE_NOTHING)
     return found

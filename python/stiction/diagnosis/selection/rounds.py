@@ -95,7 +95,7 @@ def search(
     stops : callable, optional
         Whether the first cause tells that the search has to be made otherwise.
     """
-    found = Search([base])
+    found = Search([base], smallest=smallest)
     tried: list[Candidate] = []
     try:
         bias, centred = centre(null)

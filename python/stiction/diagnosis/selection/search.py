@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ...catalogue import EffectRecord
+from ..defaults import SMALLEST
 from ..records import CandidateRow
 from ..screening.model import Model
 from .choose import Choice
@@ -40,6 +41,8 @@ class Search:
         Whether the last round refused a limit that helps, for where or how unevenly it does so.
     rests : list of (str, Model)
         Effects that may be what the form of a named one leaves, each with the model that has it.
+    smallest : float
+        Share of the friction that a cause has to contribute to be worth a name.
     interrupted : bool
     lesser : list of (Model, str, Model)
         Models, an effect of each, and the model fitted without it.
@@ -56,6 +59,7 @@ class Search:
     spread: bool = False
     tried: list[Model] = field(default_factory=list)
     rests: list[tuple[str, Model]] = field(default_factory=list)
+    smallest: float = SMALLEST
     interrupted: bool = False
     lesser: list[tuple[Model, str, Model]] = field(default_factory=list)
     rivals: list[tuple[Model, Model, Rival]] = field(default_factory=list)
