@@ -68,25 +68,25 @@ def fit_baseline_as_read(
     if plant.servo or plant.prescribed_motion or base.solution.interrupted:
         return None
     dt = min(each.dt for each in recordings)
-    left, ahead = base.nuisances.timing / dt, 0.0
     simulated = base.evidence.simulated
     part = ANSWERED if simulated else 1.0
+    ahead, left = 0.0, base.nuisances.timing / dt
     if left > -part * AHEAD:
         return None
-    then = TRIED if simulated else -left
+    found, then = None, TRIED if simulated else -left
     for _ in range(FITS):
         found = fit_baseline_read(plant, recordings, then)
         if found is None:
             return None
         before, left = left, found.base.nuisances.timing / dt
-        if abs(left) <= part * LEFT or (then == 1.0 and left < 0.0):
+        # What is left of an offset goes down as the input is read ahead, of an effort by as much.
+        slope = (left - before) / (then - ahead) if simulated and left > before else 1.0
+        ahead, then = then, float(np.clip(then - left / slope, 0.0, 1.0))
+        if abs(left) <= part * LEFT or then == ahead:
             break
-        steeper = (left - before) / (then - ahead) if simulated and left > before else 1.0
-        ahead, then = then, float(np.clip(then - left / steeper, 0.0, 1.0))
-        if then == ahead:
-            break
-    settled = abs(left) <= AHEAD and found.ahead >= AHEAD
-    return found if settled and _is_of_reading(found, dt) else None
+    if found is None or abs(left) > AHEAD or ahead < AHEAD:
+        return None
+    return found if _is_of_reading(found, dt) else None
 
 
 def fit_baseline_read(plant: Plant, recordings: Sequence[Recording], ahead: float) -> AsRead | None:
