@@ -312,3 +312,18 @@ def test_windows_of_a_spring_begin_in_its_own_motion() -> None:
     friction = base.plant.friction.parameters
     assert base.plant.inertia == pytest.approx(0.041, rel=0.02)
     assert friction["initial_stiffness"].value == pytest.approx(158.5, rel=0.05)
+
+
+def test_windows_of_what_begins_in_motion_begin_in_it() -> None:
+    """Begun at rest, the run that leads them is behind for a time constant of its pull."""
+    whole = recordings()[0]
+    assert whole.input is not None
+    assert whole.position is not None
+    first = int(np.argmax(np.abs(np.gradient(whole.position))))
+    rows = slice(first, None)
+    late = st.Recording(
+        whole.time[rows], input=whole.input[rows], position=whole.position[rows], kind="sines"
+    )
+    form = ShootingForm(plant(**TRUE), late, horizon=0.3)
+    left = np.abs(form.residual(plant(**TRUE)))
+    assert np.max(left[:4]) < 0.05 * INERTIA * np.max(np.abs(form.acceleration))

@@ -18,6 +18,9 @@ __all__ = ["nearby_motion"]
 PULL_RATE: Final = 10.0
 """Rate at which a run is drawn back to the measured motion, over the support of the kernel: fast
 enough to stay within counts of it, slow enough that the counts do not shake it."""
+MOVED: Final = 4.0
+"""Counts, or as much noise, that a motion goes in the time constant of that rate where it does not
+begin at rest."""
 STEADY: Final = 0.3
 """Most that this rate may be over one sample; a sampled spring gets unstable at 2."""
 
@@ -63,7 +66,7 @@ def nearby_motion(
     inertia = form.own(plant).inertia
     # The pull acts on what the motor turns at once, and sampled it must not shake that either.
     inertia *= min(1.0, STEADY * (1.0 - _behind_a_shaft(plant)) / (rate * form.dt))
-    motor = form.start_motor(plant, target)
+    motor = form.start_motor(plant, target, velocity=_velocity_of(form, target, rate))
     load = form.load[:-1] if load is None else load
     motion = form.motion if position is None else form.with_motion(position, load=load)
     readings, pull = motor.accompany(
@@ -74,6 +77,20 @@ def nearby_motion(
             f"{plant.source}: a simulation cannot be kept near the measured motion; it runs away"
         )
     return np.concatenate([target[:1], readings]), load + pull
+
+
+def _velocity_of(form: WeakForm, target: FloatArray, rate: float) -> float:
+    """Velocity with which a motion begins: 0 where it may as well begin at rest.
+
+    A run that begins at rest beside a machine that moves is behind it until the pull has brought it
+    up, and so are the windows that begin there.
+    """
+    samples = min(max(2, round(1.0 / (rate * form.dt))), len(target) - 1)
+    way = float(target[samples] - target[0])
+    if abs(way) <= MOVED * max(form.count, float(np.sqrt(12.0)) * form.noise):
+        return 0.0
+    slope, _ = np.polyfit(form.dt * np.arange(samples + 1), target[: samples + 1], 1)
+    return float(slope)
 
 
 def _behind_a_shaft(plant: Plant) -> float:

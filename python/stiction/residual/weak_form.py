@@ -466,13 +466,13 @@ class WeakForm:
         drive, ambient, friction, ahead = motor.follow(motion, start=start, strict=False)
         return drive, friction - ambient, ahead
 
-    def start_motor(self, plant: Plant, motion: FloatArray) -> Motor:
+    def start_motor(self, plant: Plant, motion: FloatArray, *, velocity: float = 0.0) -> Motor:
         """The plant as it is for this recording, where a motion starts.
 
         It knows the step of the readings also where the plant states no sensor.
         """
         motor = self.own(plant).follower(count=self.count)
-        motor.reset(float(motion[0]), 0.0, time=self.clock, path=self.path)
+        motor.reset(float(motion[0]), velocity, time=self.clock, path=self.path)
         return motor
 
     def late(self, plant: Plant) -> FloatArray:
