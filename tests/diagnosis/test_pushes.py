@@ -80,7 +80,7 @@ def test_a_hand_is_told_by_its_time_and_named_as_nothing_else(pushed: list[st.Re
         assert last == pytest.approx(end, abs=0.4)
     assert len(told) == 3
     assert "omething pushed the machine from" in found.sentence
-    assert "because the drive did not make that motion" in found.sentence
+    assert "because the drive, as the plant has it, did not make that motion" in found.sentence
 
 
 def test_pushes_of_one_recording_are_told_in_one_sentence() -> None:
@@ -93,8 +93,9 @@ def test_pushes_of_one_recording_are_told_in_one_sentence() -> None:
     told = push_words(pushes, ("a.csv", "b.csv"))
     assert told.startswith(
         "Something pushed the machine from 2.0 s to 3.0 s in b.csv and from 1.0 s to 2.0 s in "
-        "a.csv; these rows are left out, because the drive did not make that motion. Something "
-        "pushed the machine, or it does there what it does nowhere else, from 5.0 s to 6.5 s in "
+        "a.csv; these rows are left out, because the drive, as the plant has it, did not make that "
+        "motion. Something pushed the machine, or it does there what it does nowhere else, from "
+        "5.0 s to 6.5 s in "
         "b.csv; these rows are left out, because nothing shows that the drive made that motion. "
     )
     assert told.endswith("1 more stands among the data checks.")

@@ -79,5 +79,6 @@ def test_it_is_said_in_words() -> None:
     assert cause("frictional_lag", held=held).track_record == f"{several}, the first in 9"
     told = "a name stated like this was right in 9 of 19 sessions whose truth was known"
     assert cause(held=held).track_record == told
-    assert cause(held=Reliability(0, 0, 0)).track_record == ""
+    # One session is no record, of a right name or of a wrong one.
+    assert cause(held=Reliability(1, 0, 0)).track_record == ""
     assert cause().track_record == ""

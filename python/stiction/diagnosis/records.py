@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from .._support.frozen import ByPath, Frozen, freeze
 from ..catalogue import effects
@@ -34,6 +34,9 @@ Verdict = Literal[
     "missing_effect",
     "nothing_missing",
 ]
+
+FEWEST_TOLD: Final = 10
+"""Sessions from which on how often names were right in them is said in words."""
 
 
 class _Gained:
@@ -141,9 +144,9 @@ class Cause(_Gained):
 
     @property
     def track_record(self) -> str:
-        """What names told like this one came to, in words; "" where none was counted."""
+        """What names told like this one came to, in words; "" where few were counted."""
         held = self.reliability
-        if held is None or not held.told:
+        if held is None or held.told < FEWEST_TOLD:
             return ""
         return held.words(several=bool(self.look_alikes))
 

@@ -61,7 +61,9 @@ BEYOND: Final = 1.2
 machine was."""
 LACKS: Final = 0.4
 """Of what a push lacks: less is nothing."""
-LEFT_OUT: Final = "these rows are left out, because the drive did not make that motion"
+LEFT_OUT: Final = (
+    "these rows are left out, because the drive, as the plant has it, did not make that motion"
+)
 UNSURE: Final = "these rows are left out, because nothing shows that the drive made that motion"
 """The same where no rows alike lie elsewhere, which would show it."""
 ROUNDS: Final = 30
