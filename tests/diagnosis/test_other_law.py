@@ -80,6 +80,14 @@ def test_a_name_of_which_no_number_is_known_is_decided_by_its_strength_alone(
     assert [each.decided for each in found] == [sure, True, False, True, True]
 
 
+def test_a_gain_that_all_else_makes_up_for_is_sure_by_no_strength() -> None:
+    """Blocks know nothing of what the fit cannot tell: no interval of it ends."""
+    parameters = {"effects.warm_up.coulomb": number(ci95=(-np.inf, np.inf))}
+    selection = search("warm_up", models=[model(strength={"warm_up": 60.0})])
+    found = left_open.leave_zero_open(selection, [cause("warm_up", parameters=parameters)])
+    assert [each.decided for each in found] == [False]
+
+
 def test_a_known_speed_says_nothing_of_the_strength() -> None:
     def lag(excess: tuple[float, float]) -> Cause:
         numbers = {

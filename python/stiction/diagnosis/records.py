@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, Literal
@@ -113,13 +114,23 @@ class Cause(_Gained):
 
         A speed, a time or an order is none: of nothing any may be known.
         """
+        intervals = self._strengths
+        return bool(intervals) and all(low <= 0.0 <= high for low, high in intervals)
+
+    @property
+    def determined(self) -> bool:
+        """Whether the fit tells the numbers of its strength from all else that was fitted."""
+        return all(math.isfinite(end) for interval in self._strengths for end in interval)
+
+    @property
+    def _strengths(self) -> list[tuple[float, float]]:
+        """Intervals of the numbers that say how strong it is."""
         shapes = _shapes_of(self.name)
-        intervals = [
+        return [
             parameter.ci95
             for path, parameter in self.parameters.items()
             if path.rsplit(".", 1)[-1] not in shapes
         ]
-        return bool(intervals) and all(low <= 0.0 <= high for low, high in intervals)
 
     def to_dict(self) -> dict[str, Any]:
         """As an entry of ``effects``."""

@@ -162,7 +162,7 @@ class Model:
         """
         paths = list(self.solution.variables.paths)
         own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
-        if not self.determines(candidate):
+        if not all(np.isfinite(self.fit_result.parameters[paths[k]].stderr) for k in own):
             return False
         train = self.evidence.train
         fitted_along = self.solution.nuisances
@@ -196,12 +196,6 @@ class Model:
         correlated = spread[np.ix_(live, live)] / np.outer(errors[live], errors[live])
         squared = float(gains @ np.linalg.pinv(correlated, hermitian=True) @ gains)
         return math.sqrt(max(squared, 0.0))
-
-    def determines(self, candidate: Candidate) -> bool:
-        """Whether the fit tells the gains of an effect from all else that was fitted."""
-        numbers = self.fit_result.parameters
-        own = (numbers[f"effects.{candidate.name}.{name}"] for name in candidate.gains)
-        return all(math.isfinite(each.stderr) for each in own)
 
     def gain_covariance(self, candidate: Candidate) -> FloatArray | None:
         """Covariance of the gains of an effect over blocks of 1 s, its shape as it is.

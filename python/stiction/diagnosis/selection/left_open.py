@@ -209,9 +209,8 @@ def leave_zero_open(selection: Search, causes: Sequence[Cause]) -> list[Cause]:
     final = selection.models[-1]
     found = list(causes)
     for place, (choice, cause) in enumerate(zip(selection.choices, causes, strict=True)):
-        candidate = choice.winner.candidate
         if cause.doubtful and not (
-            final.strength(candidate) >= SURE and final.determines(candidate)
+            cause.determined and final.strength(choice.winner.candidate) >= SURE
         ):
             found[place] = replace(cause, decided=False, doubt=MAY_BE_NOTHING)
     return found
