@@ -189,7 +189,9 @@ def fit_simulated_baseline(
     evidence = base.evidence
     # Where the last cause makes the contact yield, the others tell nothing against that.
     horizon = windows_of(final.plant, evidence.forms, evidence.train)
-    # The last model was tried as well, and fitted on to its end: that is the same one.
+    # The last model was tried as well, and fitted on to its end: that is the same one. Each step of
+    # a contact that yields costs more: the others are not simulated.
+    tried = () if plant.friction.springy else tried
     others = [model for model in tried if _forms_of(model.plant) != _forms_of(final.plant)]
     begun = [
         model
