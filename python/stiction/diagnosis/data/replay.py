@@ -98,9 +98,7 @@ def surrogate_residuals(
 def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay, Noise]]:
     """The same with one noise of the position for all that one sensor read, the middle one.
 
-    Where a machine rests between two counts readings show no noise, and then it moves. Nor is the
-    effort of one recording logged with many times the noise of the others: through the kernel of a
-    window a torque that the plant misses looks like that.
+    Where a machine rests between two counts readings show no noise, and then it moves.
     """
 
     def alike(one: WeakForm, other: WeakForm) -> bool:
@@ -109,13 +107,8 @@ def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay
     usual = []
     for replay, noise in found:
         form = replay.rows.form
-        own = [each for other, each in found if alike(form, other.rows.form)]
-        position, effort = (
-            float(np.median([getattr(each, name) for each in own]))
-            for name in ("position", "effort")
-        )
-        most = MOST_TIMES * effort if effort > 0.0 else noise.effort
-        usual.append((replay, replace(noise, position=position, effort=min(noise.effort, most))))
+        own = [each.position for other, each in found if alike(form, other.rows.form)]
+        usual.append((replay, replace(noise, position=float(np.median(own)))))
     return usual
 
 
