@@ -68,7 +68,7 @@ NOT_DRIVEN: Final = (
     "drives."
 )
 
-LATE = frozenset(record.name for record in effects() if record.late)
+LATE: Final = frozenset(record.name for record in effects() if record.late)
 """Effects by which an input acts later than its rows say."""
 
 _Shot = tuple[Evidence, Model, list[Known]]
@@ -252,20 +252,18 @@ def _testable(
 ) -> Diagnosis:
     """The diagnosis of data that can be used; ``restated`` with another law than was stated.
 
-    ``ahead`` is by how many samples the input is read ahead, 0 where each row holds it to the next;
-    as the base says without it.
+    ``ahead`` is by how many samples the input is read ahead, 0 where it is taken as it stands in
+    the recordings; as the base says without it.
     """
     number = plural(len(session), "recording")
     phase(_logger, "looking through %s and fitting the base", number)
     evidence, base = fit_baseline(found.plant, session.recordings)
     as_given = found, session
-    read = (
-        fit_baseline_as_read(found.plant, session.recordings, base)
-        if ahead is None
-        else fit_baseline_read(found.plant, session.recordings, ahead)
-        if ahead
-        else None
-    )
+    read = None
+    if ahead is None:
+        read = fit_baseline_as_read(found.plant, session.recordings, base)
+    elif ahead:
+        read = fit_baseline_read(found.plant, session.recordings, ahead)
     if read is not None:
         taken, recordings, evidence, base = read
         session = Session(recordings, session.plant, session.replicates)
@@ -297,7 +295,15 @@ def _testable(
     def of(plant: Plant) -> Diagnosis | None:
         began = replace(whole, plant=plant)
         try:
-            return _testable(began, session, asked._replace(laws=()), checks, restated=True)
+            return _testable(
+                began,
+                session,
+                asked._replace(laws=()),
+                checks,
+                restated=True,
+                # What was read ahead is in these recordings already.
+                ahead=None if read is None else 0.0,
+            )
         except InputError as error:
             # Nothing is broken: these data do not suffice for a diagnosis with that law.
             _logger.info("with %s: %s", plant.friction.law, error)
