@@ -232,7 +232,7 @@ def horizon_of(
     shortest = min(form.dt * len(form.readings) for form in forms)
     if any(form.prescribed for form in forms) or shortest < LEAST_WINDOWS * HORIZONS_S[1]:
         return None
-    if not {"coulomb", "initial_stiffness"} <= friction.keys():
+    if plant.friction.random or not {"coulomb", "initial_stiffness"} <= friction.keys():
         return None
     if _fine(plant, [each.form for each in rows]) or not shows_its_ring(plant, forms):
         return None
@@ -319,8 +319,15 @@ def may_be_astray(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> b
 
 
 def can_be_shot(plant: Plant, forms: Sequence[WeakForm]) -> bool:
-    """Whether a plant along a measured motion can be simulated over the longest windows as well."""
-    if plant.servo or any(form.prescribed or form.simulated for form in forms):
+    """Whether a plant along a measured motion can be simulated over the longest windows as well.
+
+    Not one whose contact is drawn: in which window which place breaks is no fit's to find.
+    """
+    if (
+        plant.servo
+        or plant.friction.random
+        or any(form.prescribed or form.simulated for form in forms)
+    ):
         return False
     shortest = min(form.dt * len(form.readings) for form in forms)
     return plant.inertia > 0.0 and shortest >= LEAST_WINDOWS * HORIZONS_S[1]

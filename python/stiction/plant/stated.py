@@ -90,6 +90,11 @@ class Friction:
         """Whether the contact rests rigidly, in a mode of its own, until it breaks away."""
         return "mode" in self.record.outputs and not self.springy
 
+    @property
+    def random(self) -> bool:
+        """Whether places of its contact are drawn: what it does next hangs on the last digits."""
+        return any(parameter.name == "seed" for parameter in self.record.parameters)
+
 
 @dataclass(frozen=True)
 class Effect:
