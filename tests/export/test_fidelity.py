@@ -100,9 +100,28 @@ def test_curves_keep_a_cogging(cogged):
     assert table > 0.98
     if shutil.which("cc") is None:
         pytest.skip("no C compiler is installed")
-    (code,) = shares(machine.export("c").check(recorded))
+    code, stepped = shares(machine.export("c").check(recorded))
     # It has more points than the table.
     assert code > max(table, 0.998)
+    assert stepped > 0.999
+
+
+REMEMBERED = {"name": "dwell_strengthening", "strength": 0.3, "time": 0.5}
+
+
+@pytest.mark.parametrize("friction", [DRY, LUGRE])
+@pytest.mark.parametrize("tables", [{}, {"body": {"inertia": 0.01, "gravity_amplitude": 0.1}}])
+def test_c_is_run_step_by_step_beside_its_curves(friction, tables):
+    if shutil.which("cc") is None:
+        pytest.skip("no C compiler is installed")
+    machine = plant(friction, COGGING, REMEMBERED, **tables)
+    found = machine.export("c").check(session(machine))
+    curves, stepped = found.runs
+    assert [curves.name, stepped.name] == ["", "step by step"]
+    # Its step is the plant's, but for turns inside a sample; curves know no pre-sliding.
+    assert stepped.error < 2.0 * found.whole
+    assert stepped.error < 0.5 * curves.error
+    assert "; step by step " in found.message
 
 
 def test_rust_keeps_what_the_c_keeps(cogged):
@@ -113,7 +132,7 @@ def test_rust_keeps_what_the_c_keeps(cogged):
         (rust,) = machine.export("rust").check(recorded).runs
     except st.InputError as error:
         pytest.skip(f"{error}")
-    (code,) = machine.export("c").check(recorded).runs
+    code, _ = machine.export("c").check(recorded).runs
     assert rust.error == pytest.approx(code.error, rel=1e-9)
 
 

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from .._support.arrays import FloatArray
 from ..errors import InputError
@@ -23,7 +24,7 @@ from ..recording.session_clock import subset
 from ..recording.split import BLOCK_S, split
 from ..recording.usable import checks_of, usable
 from .registry import Target, targets
-from .runs import EffortRun, MotionRun, Windows
+from .runs import EffortRun, Led, MotionRun, StepRun, Windows
 from .speeds import greatest_speed
 
 if TYPE_CHECKING:
@@ -42,6 +43,9 @@ LEAST_GAIN: Final = 0.01
 MOVES_TIMES: Final = 2.0
 """Counts, or four times as many standard deviations of the white noise, within a kernel, from which
 on a machine moves: a curve over the speed says nothing of one at rest."""
+
+FINER: Final = 8
+"""Steps of a sample in which a target steps a contact."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +198,8 @@ class Bench:
             return self._by_loop(made, target, moving)
         if moving:
             return self._by_motion(made.target, moving)
-        return self._by_effort(made.target, [run for run in runs if isinstance(run, EffortRun)])
+        along = [run for run in runs if isinstance(run, EffortRun | StepRun)]
+        return self._by_effort(made.target, along)
 
     def _by_loop(self, made: Export, target: Target, runs: Sequence[MotionRun]) -> Fidelity:
         """Whole recordings of a servo from its goal alone, as a fit and a diagnosis see them."""
@@ -271,7 +276,7 @@ class Bench:
             found.append(form.unit * (gone @ weights - form.acceleration[mask]))
         return found
 
-    def _by_effort(self, target: str, runs: Sequence[EffortRun]) -> Fidelity:
+    def _by_effort(self, target: str, runs: Sequence[EffortRun | StepRun]) -> Fidelity:
         errors: list[list[FloatArray]] = [[] for _ in range(1 + len(runs))]
         without = []
         bare = self._bare_starts if self._plant.effects else [None] * len(self._along)
@@ -282,21 +287,33 @@ class Bench:
                 form.measured_effort(self._plant)
                 - form.own(self._plant).inertia * form.acceleration
             )
-            velocity = np.diff(form.position) / form.dt
-            place = 0.5 * (form.position[1:] + form.position[:-1])
             for found, run in zip(errors[1:], runs, strict=True):
-                needed = form.applied_effort(run.effort(velocity, place), np.zeros_like(place))
-                found.append((known - needed)[mask])
+                found.append((known - self._needed(form, start, run))[mask])
             if self._plant.effects:
                 without.append(form.residual(self._bare, bare_start)[mask])
         together = [np.concatenate(own) for own in errors]
         return self._told(target, "effort along the measured motion", runs, together, without)
 
+    def _needed(self, form: WeakForm, start: Start, run: EffortRun | StepRun) -> FloatArray:
+        """Effort that a run takes for the measured motion beside that of the inertia."""
+        if isinstance(run, EffortRun):
+            velocity = np.diff(form.position) / form.dt
+            place = 0.5 * (form.position[1:] + form.position[:-1])
+            return form.applied_effort(run.effort(velocity, place), np.zeros_like(place))
+        temperature = form.around["temperature"]
+        drive = form.along(self._plant, start)[0]
+        led = Led(form.dt, form.position, drive, form.load[:-1], temperature)
+        steps = run.effort(_finer(led)).reshape(len(drive), FINER)
+        if form.springy:
+            return form.needed_effort(self._plant, steps[:, -1])
+        # Of a rigid contact it is that of the whole sample, as a held input is.
+        return form.applied_effort(np.mean(steps, axis=1), np.zeros_like(drive))
+
     def _told(
         self,
         target: str,
         of: str,
-        runs: Sequence[MotionRun | EffortRun],
+        runs: Sequence[MotionRun | EffortRun | StepRun],
         errors: Sequence[FloatArray],
         without: Sequence[FloatArray],
         *,
@@ -385,6 +402,25 @@ class Bench:
     @cached_property
     def _bare_starts(self) -> list[Start]:
         return [self._begun(self._bare, row) for row, _ in self._along]
+
+
+def _finer(led: Led) -> Led:
+    """The same motion with parts of samples between, smooth through all of them.
+
+    What a contact takes goes with velocity and position at a stamp, and a step holds what leads up
+    to it.
+    """
+    samples = len(led.drive)
+    rows = np.arange(samples + 1)
+    between = CubicHermiteSpline(rows, led.position, np.gradient(led.position))
+    temperature = None if led.temperature is None else np.repeat(led.temperature, FINER)
+    return Led(
+        led.dt / FINER,
+        between(np.arange(FINER * samples + 1) / FINER),
+        np.repeat(led.drive, FINER),
+        np.repeat(led.load, FINER),
+        temperature,
+    )
 
 
 def _speed(made: Export) -> float:

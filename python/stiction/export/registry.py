@@ -18,7 +18,7 @@ from .targets import __path__ as _path
 
 if TYPE_CHECKING:
     from ..plant import Plant
-    from .runs import EffortRun, MotionRun
+    from .runs import EffortRun, MotionRun, StepRun
 
 __all__ = ["Target", "export", "targets"]
 
@@ -45,7 +45,7 @@ class Target:
     name: str
     summary: str
     write: Callable[[Plant, float], Export]
-    runs: Callable[[Export, Plant], Sequence[MotionRun | EffortRun]] | None = None
+    runs: Callable[[Export, Plant], Sequence[MotionRun | EffortRun | StepRun]] | None = None
     write_robot: Callable[[Mapping[str, Plant], Mapping[str, float]], Export] | None = None
 
 

@@ -15,7 +15,15 @@ if TYPE_CHECKING:
     from ..plant import Plant
     from ..residual.weak_form import Start
 
-__all__ = ["EffortRun", "MotionRun", "Windows", "dry_friction", "gravity_effort"]
+__all__ = [
+    "EffortRun",
+    "Led",
+    "MotionRun",
+    "StepRun",
+    "Windows",
+    "dry_friction",
+    "gravity_effort",
+]
 
 
 @dataclass(frozen=True)
@@ -111,6 +119,46 @@ class EffortRun:
 
     name: str
     effort: Callable[[FloatArray, FloatArray], FloatArray]
+
+
+@dataclass(frozen=True)
+class Led:
+    """A contact led along a measured motion, sample by sample.
+
+    Attributes
+    ----------
+    dt : float
+        s.
+    position : numpy.ndarray, shape (rows,)
+        As it drives friction; rad or m.
+    drive, load : numpy.ndarray, shape (rows - 1,)
+        Efforts held over each sample, N·m or N.
+    temperature : numpy.ndarray, shape (rows - 1,), or None
+        Degrees Celsius; None where it was not measured.
+    """
+
+    dt: float
+    position: FloatArray
+    drive: FloatArray
+    load: FloatArray
+    temperature: FloatArray | None
+
+
+@dataclass(frozen=True)
+class StepRun:
+    """A target that steps a contact along a motion.
+
+    Attributes
+    ----------
+    name : str
+        As for ``MotionRun``.
+    effort : callable
+        Of ``Led``; returns what friction takes at the end of each sample, less gravity and what
+        effects add, N·m or N, shape (rows - 1,).
+    """
+
+    name: str
+    effort: Callable[[Led], FloatArray]
 
 
 def dry_friction(plant: Plant, friction: float, damping: float) -> tuple[EffortRun]:

@@ -410,11 +410,15 @@ class WeakForm:
         measured = self.effort[1:] if self.prescribed else _centred(drive)
         measured = measured + _centred(self.load[:-1])
         own = self.own(plant)
-        if own.friction.springy and not self.prescribed:
+        inertial = own.inertia * (self.acceleration + self._bent(ahead))
+        return self._mean(measured), inertial + self.needed_effort(own, needed)
+
+    def needed_effort(self, plant: Plant, needed: FloatArray) -> FloatArray:
+        """What a contact takes at the ends of the samples, through the kernel; shape (n,)."""
+        if plant.friction.springy and not self.prescribed:
             # As `RowKernel` has it where it is smooth.
             needed = needed + np.diff(needed, 2, prepend=needed[:1], append=needed[-1:]) / 12.0
-        inertial = own.inertia * (self.acceleration + self._bent(ahead))
-        return self._mean(measured), inertial + self._mean(needed)
+        return self._mean(needed)
 
     def residual(self, plant: Plant, start: Start = None) -> FloatArray:
         """Measured minus needed effort of every row, starts as in ``efforts``; shape (n,)."""
