@@ -17,7 +17,7 @@ from stiction.diagnosis.screening.base import fit_baseline
 from stiction.diagnosis.screening.model import fit_model
 from stiction.diagnosis.selection.moved import _powers, borne_out_in_motion
 from stiction.diagnosis.selection.search import Search
-from stiction.fitting.forms import Through, may_be_astray
+from stiction.fitting.forms import Through
 from stiction.fitting.rows import Nuisances
 from stiction.plant.parameter import Parameter
 from stiction.plant.stated import Effect
@@ -242,76 +242,6 @@ def test_a_fit_is_not_pulled_towards_the_plant_that_it_began_with() -> None:
     (effect,) = found.plant.effects
     assert effect.parameters["cosine"].value == pytest.approx(0.6 * WAVE, rel=0.025)
     assert effect.parameters["sine"].value == pytest.approx(0.6 * WAVE, rel=0.025)
-
-
-REACH = 1e-4
-"""rad, in which the contacts below break away."""
-
-
-def yielding(law: str, **stated: float) -> st.Plant:
-    """A contact that yields, as far as it is stated."""
-    raw: dict[str, Any] = {"drive": {"input": "torque_nm"}, "body": {"inertia": 0.01}}
-    return st.Plant.from_dict(raw | {"friction": {"law": law, **stated}})
-
-
-def read_by(law: str, counts_in_reach: float) -> list[st.Recording]:
-    """Sums of sines of a contact that yields, over a reach of so many counts of the encoder."""
-    found = []
-    for k in range(4):
-        rng = np.random.default_rng([67, k])
-        time = np.arange(8000) * 1e-3
-        hertz, phase = rng.uniform(0.1, 3.0, 4), rng.uniform(0.0, 2.0 * np.pi, 4)
-        size = rng.uniform(0.1, 0.35, 4)
-        given = (size * np.sin(2.0 * np.pi * time[:, None] * hertz + phase)).sum(axis=1)
-        motor = yielding(law, coulomb=0.3, initial_stiffness=0.3 / REACH, viscous=0.02).motor()
-        moved = motor.simulate(given[:-1], 1e-3).position
-        count = REACH / counts_in_reach
-        read = count * np.round(np.concatenate([[0.0], moved]) / count)
-        found.append(st.Recording(time, input=given, position=read, kind="sines"))
-    return found
-
-
-@pytest.mark.parametrize("law", ["lugre", "maxwell_slip"])
-@pytest.mark.parametrize("counts", [5.0, 17.0])
-def test_a_spring_that_is_led_by_counts_lacks_nothing(law: str, counts: float) -> None:
-    """Its readings make up to 8 % of the effort beside it, and no effect does."""
-    found = st.diagnose(yielding(law), read_by(law, counts), threads=1)
-    assert found.verdict == "nothing_missing"
-    assert "simulated" in found.data["residual"]
-    assert "a motion of its own" in found.data["residual"]
-
-
-def test_a_spring_is_simulated_where_counts_lead_it() -> None:
-    evidence, _ = fit_baseline(yielding("maxwell_slip"), read_by("maxwell_slip", 3000.0))
-    assert not evidence.simulated
-    evidence, _ = fit_baseline(yielding("lugre"), read_by("lugre", 17.0))
-    assert evidence.simulated
-
-
-def test_a_rigid_contact_is_always_asked() -> None:
-    assert may_be_astray(plant(**TRUE), NOTHING, [])
-
-
-def test_windows_of_a_spring_begin_in_its_own_motion() -> None:
-    """Begun at readings of a tenth of its reach they made it nine times as stiff."""
-    true = {"coulomb": 0.61, "initial_stiffness": 158.5, "exponent": 1.0, "viscous": 0.56}
-    raw = {"drive": {"input": "torque_nm"}, "friction": {"law": "dahl", **true}}
-    machine = st.Plant.from_dict(raw | {"body": {"inertia": 0.041}})
-    found = []
-    for k in range(3):
-        rng = np.random.default_rng([68, k])
-        time = np.arange(2500) * 4e-3
-        hertz, phase = rng.uniform(0.1, 2.0, 4), rng.uniform(0.0, 2.0 * np.pi, 4)
-        given = 0.4 * np.sin(2.0 * np.pi * time[:, None] * hertz + phase).sum(axis=1)
-        moved = machine.motor().simulate(given[:-1], 4e-3).position
-        count = 2.0 * np.pi / 16384
-        read = count * np.round(np.concatenate([[0.0], moved]) / count)
-        found.append(st.Recording(time, input=given, position=read, kind="sines"))
-    stated = {"law": "dahl", "exponent": {"value": 1.0, "fixed": True}}
-    _, base = fit_baseline(st.Plant.from_dict(raw | {"friction": stated}), found)
-    friction = base.plant.friction.parameters
-    assert base.plant.inertia == pytest.approx(0.041, rel=0.02)
-    assert friction["initial_stiffness"].value == pytest.approx(158.5, rel=0.05)
 
 
 def test_windows_of_what_begins_in_motion_begin_in_it() -> None:

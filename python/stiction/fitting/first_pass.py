@@ -21,7 +21,6 @@ from .forms import (
     astray,
     followable,
     horizon_of,
-    may_be_astray,
     shows_its_ring,
     stiffen,
     wider_of,
@@ -258,17 +257,13 @@ def _simulated(
     """What is known, fitted on by what is simulated where the weak form does not do."""
     seen, found, start = known.seen, known.solution, known.start
     servo = plant.servo
-    horizon = horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
-    tried = None
-    asked = horizon is None and windows is not False
-    if asked and (windows or may_be_astray(found.plant, found.nuisances, seen.train)):
-        tried = horizon = windows_of(found.plant, seen.forms, seen.train)
+    tried = None if windows is False else windows_of(found.plant, seen.forms, seen.train)
+    horizon = tried or horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     if horizon is not None or servo:
         phase(_logger, "fitting it again, simulated")
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
-        # Along the measured motion a servo that is not yet understood may lead anywhere, and along
-        # readings that lead it astray a contact that yields ends in a valley of these.
-        begun = [found.plant, start] if servo or plant.friction.springy else [found.plant]
+        # Along the measured motion a servo that is not yet understood may lead anywhere.
+        begun = [found.plant, start] if servo else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
         fitted = launch(begun, paths, other.train, most=most)
         if servo:

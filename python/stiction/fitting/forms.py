@@ -34,7 +34,6 @@ __all__ = [
     "followable",
     "forms_of",
     "horizon_of",
-    "may_be_astray",
     "residual_sentence",
     "restore_bounds",
     "shows_its_ring",
@@ -77,9 +76,6 @@ ASTRAY: Final = 0.6
 that a simulation may leave at most for a rigid contact to have been led astray: with more it is
 noise of the effort that is left either way, and the weak form sees what is fast; or the plant
 stands still."""
-MAKES: Final = 0.5
-"""Share of what is left along the readings that these must make of a contact that yields, for it to
-be simulated: with less a simulation cannot leave ``ASTRAY`` of what they make."""
 SHOWS: Final = 0.01
 """Share of the measured effort that accelerations must take for windows to be counted by them."""
 MATTERS: Final = 1e-3
@@ -240,24 +236,18 @@ def horizon_of(
     measured = [each.form.measured_effort(plant)[each.mask] for each in rows]
     if _size(left) < LEAST_LEFT * _size(measured):
         return None
-    return _ringing_horizon(plant, rows)
-
-
-def _ringing_horizon(plant: Plant, rows: Sequence[Rows]) -> float:
-    """How long a contact that yields is simulated, s (see ``horizon_of``)."""
     drifts = float(np.median([_time(plant, each.form) for each in rows]))
-    stiffness = plant.friction.parameters["initial_stiffness"].value
+    stiffness = friction["initial_stiffness"].value
     rings = RINGS * 2.0 * np.pi * float(np.sqrt(plant.inertia / stiffness))
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
 
 
 def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) -> float | None:
-    """Over how long a contact should be simulated beside the weak form, None for not at all.
+    """Over how long a rigid contact should be simulated beside the weak form, None for not at all.
 
-    A rigid one turns round with the reading, and one that yields does as the reading does, whatever
-    that is off by: whether that matters is known once both residuals were tried (see ``astray``).
-    For a rigid one the window is the longest: the state at its start comes from the readings too,
-    and the longer the window is the less hangs on it.
+    It turns round with the reading, whatever that is off by: whether that matters is known once
+    both residuals were tried (see ``astray``). The window is the longest one: the state at its
+    start comes from the readings too, and the longer the window is the less hangs on it.
 
     Parameters
     ----------
@@ -275,12 +265,7 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) ->
         is counted by it tells nothing, and a machine that follows from one sample to the next is
         slow to simulate.
     """
-    if not can_be_shot(plant, forms):
-        return None
-    if plant.friction.springy:
-        known = {"coulomb", "initial_stiffness"} <= plant.friction.parameters.keys()
-        return _ringing_horizon(plant, rows) if known and shows_its_ring(plant, forms) else None
-    if not plant.friction.sticks:
+    if not plant.friction.sticks or not can_be_shot(plant, forms):
         return None
     if any(REMEMBERS in effect.record.law_terms for effect in plant.effects):
         # The contact yields by its effect.
@@ -289,33 +274,6 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) ->
     if _size(moved) < SHOWS * _size([each.form.measured_effort(plant)[each.mask] for each in rows]):
         return None
     return HORIZONS_S[1]
-
-
-def may_be_astray(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> bool:
-    """Whether it is worth a simulation to know whether readings lead a contact astray.
-
-    For a rigid one always. Each step of a contact that yields costs more, and a simulation cannot
-    leave clearly less than the readings make where they make a small part of what is left.
-
-    Parameters
-    ----------
-    plant : Plant
-        Fitted to ``rows``.
-    nuisances : Nuisances
-    rows : sequence of Rows
-        Of the weak form.
-    """
-    if not plant.friction.springy:
-        return True
-    left, made, measured = [], [], []
-    for each in rows:
-        read = residual_of_readings(each.form, plant, nuisances.start(each.index))
-        if read is None:
-            return False
-        left.append(each.residual(plant, nuisances)[each.mask])
-        made.append(finite(read)[each.mask])
-        measured.append(each.form.measured_effort(plant)[each.mask])
-    return _size(made) > max(MAKES * _size(left), MATTERS * _size(measured))
 
 
 def can_be_shot(plant: Plant, forms: Sequence[WeakForm]) -> bool:
@@ -542,7 +500,7 @@ def residual_sentence(forms: Sequence[WeakForm], plant: Plant) -> str:
             "(shooting), because the readings of the position are too coarse to drive friction: "
             + (
                 f"pre-sliding is over within {FEWEST_COUNTS:.0f} of their steps."
-                if plant.friction.springy and not _fine(plant, forms)
+                if plant.friction.springy
                 else "led along them, it leaves much that it does not leave along a motion of its "
                 "own."
             )

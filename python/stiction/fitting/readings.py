@@ -17,10 +17,10 @@ from ..residual.weak_form import Start, WeakForm
 
 __all__ = [
     "Residual",
-    "own_motion",
     "position_noise",
     "read_sensor",
     "residual_of_readings",
+    "sliding_motion",
     "true_motion",
 ]
 
@@ -70,19 +70,18 @@ def true_motion(form: WeakForm) -> FloatArray:
     return smooth(form.position, form.dt, max(form.dt, SMOOTHING_SHARE * form.kernel.support))
 
 
-def own_motion(
+def sliding_motion(
     form: WeakForm, plant: Plant, start: Start
 ) -> tuple[FloatArray, Residual, FloatArray] | None:
-    """A motion near the measured one that a plant makes by itself, residual and load.
+    """A motion near the measured one that a plant with a rigid contact makes, residual and load.
 
-    None where there is no such motion: nothing drives a machine that is moved, and one with hardly
-    any inertia cannot be simulated in samples.
+    None where there is no such contact, or no such motion: nothing drives a machine that is moved,
+    and one with hardly any inertia cannot be simulated in samples.
 
-    A rigid contact stops from one sample to the next, which a smoothed motion never does, and one
-    that yields answers each wave that smoothing leaves of the counts: what readings make of either
-    would be no part of the noise.
+    Such a machine stops from one sample to the next. A smoothed motion never does, and what
+    readings make of stops would be no part of the noise.
     """
-    if form.prescribed or plant.servo:
+    if form.springy or form.prescribed or plant.servo:
         return None
     try:
         motion, load = nearby_motion(form, plant, start, position=true_motion(form))
@@ -90,14 +89,14 @@ def own_motion(
         _logger.info("followed instead of simulated: %s", error)
         return None
 
-    # A rigid contact at rest answers whatever acts on it, noise as well.
-    takes = np.ones(len(motion) - 1) if form.springy else np.diff(motion) != 0.0
+    # A contact at rest answers whatever acts on it, noise as well.
+    moves = np.diff(motion) != 0.0
     inertia = form.own(plant).inertia
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
         driving = form.driving_motion(readings)
         short = form.short(plant, start, position=driving, load=load)
-        acted = form.applied_effort(np.zeros_like(load), load + added[1:] * takes)
+        acted = form.applied_effort(np.zeros_like(load), load + added[1:] * moves)
         return short + acted - inertia * form.accelerations(readings, driving)
 
     return motion, residual, load
@@ -116,9 +115,9 @@ def residual_of_readings(form: WeakForm, plant: Plant, start: Start = None) -> F
     start : dict, optional
         Friction state at the first row.
     """
-    own = own_motion(form, plant, start)
-    if own is None:
+    slid = sliding_motion(form, plant, start)
+    if slid is None:
         return None
-    motion, residual, _ = own
+    motion, residual, _ = slid
     readings = read_sensor(form, motion, position_noise(form), np.random.default_rng(0))
     return residual(readings, np.zeros(len(motion)))

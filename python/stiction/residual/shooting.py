@@ -51,9 +51,9 @@ class ShootingForm(WeakForm):
     friction, and errors of the readings are noise of the output alone. Each window starts at the
     smoothed measured position and velocity, with friction, effects and clock as they are after
     following the measured motion up to there, and runs with the measured input over the support
-    of the kernel. The measured motion is smoothed once more by a run of the plant that is drawn to
-    it (see ``nearby_motion``): it stops where a machine would, and within a count a spring yields
-    as far as its effort takes it. The residual is
+    of the kernel. Where the contact is rigid the measured motion is smoothed once more by a run of
+    the plant that is drawn to it (see ``nearby_motion``): it stops where a machine would. The
+    residual is
 
         r = J₀·K''∗x̂ − J₀·K''∗x,
 
@@ -141,7 +141,7 @@ class ShootingForm(WeakForm):
         """Leader and inertia, all windows alike."""
         stated = "inertia" in plant.body
         self.unit = self.own(plant).inertia if stated else 1.0
-        if stated:
+        if stated and self._is_rigid(plant):
             self._leader = plant
             self.denoise(self.noise)
 
@@ -172,6 +172,14 @@ class ShootingForm(WeakForm):
         self._led.append(other)
         del self._led[:-MOST_LED]
         return other
+
+    def _is_rigid(self, plant: Plant) -> bool:
+        """Whether pre-sliding is over within a count."""
+        friction = plant.friction.parameters
+        if not {"coulomb", "initial_stiffness"} <= friction.keys():
+            return not self.springy
+        reach = friction["coulomb"].value / friction["initial_stiffness"].value
+        return reach < max(self.count, self.noise)
 
     def driving_motion(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
         """The motion from which windows start, under a load in the place of the recorded one.

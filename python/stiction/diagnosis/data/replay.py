@@ -12,7 +12,7 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ...catalogue import effects
 from ...errors import InputError
-from ...fitting.readings import own_motion, position_noise, read_sensor, true_motion
+from ...fitting.readings import position_noise, read_sensor, sliding_motion, true_motion
 from ...fitting.rows import Nuisances, Rows
 from ...plant import Plant
 from ...residual.accompanied import nearby_motion
@@ -152,9 +152,9 @@ class _Replay:
         elif isinstance(form, ShootingForm):
             motion, residual = _shot(form, plant, start)
         else:
-            own = own_motion(form, plant, start)
-            if own is not None:
-                return cls(rows, plant, nuisances, *own)
+            slid = sliding_motion(form, plant, start)
+            if slid is not None:
+                return cls(rows, plant, nuisances, *slid)
             motion, residual = _followed(form, plant, start)
         return cls(rows, plant, nuisances, motion, residual)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError, NotEnoughData
 from ...fitting.first_pass import WORTH_WIDER, Along, FirstPass, first_pass, remaining_share
-from ...fitting.forms import Through, astray, may_be_astray, wider_of, windows_of
+from ...fitting.forms import Through, astray, wider_of, windows_of
 from ...fitting.minimise import MOST_EVALUATIONS
 from ...fitting.pushes import Watch
 from ...fitting.rows import count_by
@@ -189,16 +189,13 @@ def fit_simulated_baseline(
     evidence = base.evidence
     # Where the last cause makes the contact yield, the others tell nothing against that.
     horizon = windows_of(final.plant, evidence.forms, evidence.train)
-    # The last model was tried as well, and fitted on to its end: that is the same one. Each step of
-    # a contact that yields costs more: the others are not simulated.
-    tried = () if plant.friction.springy else tried
+    # The last model was tried as well, and fitted on to its end: that is the same one.
     others = [model for model in tried if _forms_of(model.plant) != _forms_of(final.plant)]
     begun = [
         model
         for model in (final, *others)
         if model.plant.effects != plant.effects
         and windows_of(model.plant, evidence.forms, evidence.train) is not None
-        and may_be_astray(model.plant, model.nuisances, evidence.train)
     ]
     if horizon is None or not begun:
         return None
