@@ -16,11 +16,15 @@ from ..plant import Plant
 from ..recording.names import names_of
 from ..residual.weak_form import WeakForm
 from .forms import (
+    KERNELS,
     LEAST_LEFT,
     Through,
     astray,
+    can_be_shot,
     followable,
     horizon_of,
+    restore_bounds,
+    ringing_horizon,
     shows_its_ring,
     stiffen,
     wider_of,
@@ -28,6 +32,7 @@ from .forms import (
 )
 from .minimise import Solution, launch, or_from, with_interruption
 from .pushes import Watch
+from .readings import misled
 from .rows import Nuisances, Rows, count_by
 from .start import complete, free_paths, with_light_friction, yielding_starts
 
@@ -56,6 +61,16 @@ QUICKER: Final = 1.5
 from readings: a ripple of torque came to 0.8 to 1.0, angles read wrong to 1.7 and more."""
 
 _logger = logging.getLogger(__name__)
+
+PULLS: Final = (30.0, 60.0, 120.0, 240.0)
+"""Rates, 1/s, at which the run of a plant is drawn to the readings: as over windows of 0.3 s, to as
+over a kernel of 40 ms. The faster it is, the more counts shake it, and the less late it is by what
+the plant lacks."""
+LEADS_WELL: Final = 1.1
+"""Share of the least that the fastest of them may leave, which is taken."""
+LED_LESS: Final = 0.8
+"""Share of what is left along the readings that a contact may leave along a motion of its own, for
+these to have misled it."""
 
 
 class Seen(Protocol):
@@ -146,7 +161,8 @@ def first_pass(
     wide : bool
         Whether wider kernels may be tried.
     windows : bool, optional
-        Whether a rigid contact is to be simulated over windows, where that is known already.
+        Whether readings mislead its friction, where that is known already: a rigid contact is to be
+        simulated over windows then, and one that yields led by a motion of its own.
     along : Along, optional
         Where a pass over the same rows ended that was not simulated: what it did is not done again.
 
@@ -290,6 +306,8 @@ def _simulated(
             stiffen(seen.forms, found.plant)
         else:
             found = _kept(found, fitted)
+    elif _may_be_misled(known, windows):
+        seen, found = _led(known, paths, again, most=most, asks=not windows)
     lost = None if found.interrupted else _lost(found, seen.train)
     if lost is not None:
         named = names_of(seen.watch.recordings)[lost]
@@ -299,6 +317,71 @@ def _simulated(
             "nearer to the machine, or bounds for them"
         )
     return FirstPass(seen, found, start)
+
+
+def _may_be_misled(known: FirstPass[S], windows: bool | None) -> bool:
+    """Whether a contact that yields is to be tried along motions of its own."""
+    found = known.solution
+    if windows is False or found.interrupted or not found.plant.friction.springy:
+        return False
+    return bool(windows) or misled(found.plant, found.nuisances, known.seen.train)
+
+
+def _led(
+    known: FirstPass[S],
+    paths: Sequence[str],
+    again: Callable[[Plant, Through, Watch], S],
+    *,
+    most: int,
+    asks: bool,
+) -> tuple[S, Solution]:
+    """What is known, fitted on along motions of its own where readings mislead its friction.
+
+    ``asks`` is whether they do so is still to be asked. The plant that leads stays as windows have
+    it: along its own motion a contact that yields may be as stiff as it likes, and a fit that was
+    led by itself again and again would drift.
+    """
+    phase(_logger, "fitting it again, along motions of its own")
+    seen, found = known.seen, known.solution
+    leader = _over_windows(known, paths, again, most=most)
+    other = again(found.plant, KERNELS, seen.watch)
+    fits: list[tuple[float, float, Solution]] = []
+    for pull in PULLS:
+        for form in other.forms:
+            form.lead(leader, pull)
+        fitted = launch([leader], paths, other.train, most=most)
+        fits.append((remaining_share(fitted, other.train), pull, fitted))
+    least = min(share for share, _, _ in fits)
+    share, pull, led = [each for each in fits if each[0] <= LEADS_WELL * least][-1]
+    for form in other.forms:
+        form.lead(leader, pull)
+    if asks and share >= LED_LESS * remaining_share(found, seen.train):
+        return seen, _kept(found, led)
+    return other, _after(found, led)
+
+
+def _over_windows(
+    known: FirstPass[S],
+    paths: Sequence[str],
+    again: Callable[[Plant, Through, Watch], S],
+    *,
+    most: int,
+) -> Plant:
+    """The plant as a simulation over windows has it; as it is known where there is none.
+
+    Along readings that mislead it a fit ends in a valley of these.
+    """
+    plant, seen = known.solution.plant, known.seen
+    stated = {"coulomb", "initial_stiffness"} <= plant.friction.parameters.keys()
+    if not (stated and can_be_shot(plant, seen.forms) and shows_its_ring(plant, seen.forms)):
+        return plant
+    through = Through(horizon=ringing_horizon(plant, seen.train))
+    other = again(plant, through, seen.watch)
+    begun = [followable(each, other.forms) for each in (plant, known.start)]
+    fitted = launch(begun, paths, other.train, most=most)
+    if not shows_its_ring(fitted.plant, other.forms) or _lost(fitted, other.train) is not None:
+        return plant
+    return restore_bounds(fitted.plant, plant)
 
 
 def _wider(

@@ -36,6 +36,7 @@ __all__ = [
     "horizon_of",
     "residual_sentence",
     "restore_bounds",
+    "ringing_horizon",
     "shows_its_ring",
     "soften",
     "stiffen",
@@ -236,8 +237,13 @@ def horizon_of(
     measured = [each.form.measured_effort(plant)[each.mask] for each in rows]
     if _size(left) < LEAST_LEFT * _size(measured):
         return None
+    return ringing_horizon(plant, rows)
+
+
+def ringing_horizon(plant: Plant, rows: Sequence[Rows]) -> float:
+    """How long a contact that yields is simulated, s (see ``horizon_of``)."""
     drifts = float(np.median([_time(plant, each.form) for each in rows]))
-    stiffness = friction["initial_stiffness"].value
+    stiffness = plant.friction.parameters["initial_stiffness"].value
     rings = RINGS * 2.0 * np.pi * float(np.sqrt(plant.inertia / stiffness))
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
 
@@ -514,6 +520,11 @@ def residual_sentence(forms: Sequence[WeakForm], plant: Plant) -> str:
             f"{led}: wider than noise asks for, because through narrower kernels the inertia "
             "drowned in what they show more, as where an encoder errs with the angle, or stamps "
             "are not the times of the samples; what is over sooner is averaged away."
+        )
+    if any(form.leads for form in forms):
+        return (
+            f"The plant was led along motions that it makes near the readings by itself, averaged "
+            f"over {width} ms (weak form), because counts are steps of its pre-sliding."
         )
     if _fine(plant, forms):
         return f"{led}, because the readings of the position are fine enough to drive friction."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
@@ -13,14 +13,17 @@ from ..errors import InputError
 from ..plant import Plant
 from ..recording.motion import GAUSSIAN, smooth
 from ..residual.accompanied import nearby_motion
+from ..residual.finite import finite
 from ..residual.weak_form import Start, WeakForm
+from .rows import Nuisances, Rows
 
 __all__ = [
     "Residual",
+    "misled",
+    "own_motion",
     "position_noise",
     "read_sensor",
     "residual_of_readings",
-    "sliding_motion",
     "true_motion",
 ]
 
@@ -36,6 +39,11 @@ noise allows: what is left of the noise of its speed would be in motion and read
 noise to a replay."""
 BESIDE_NOISE: Final = 1.15
 """Readings are as far from it then as noise takes them, but for so much."""
+MAKES: Final = 0.5
+"""Share of what is left along the readings that these must make of a contact that yields to mislead
+it: where they make less, something else is most of what is left."""
+MATTERS: Final = 1e-3
+"""Share of the measured effort that they must make: less, and it does not matter."""
 
 Residual = Callable[[FloatArray, FloatArray], FloatArray]
 """From readings, and noise that is added to the effort, to the residual; shapes (rows,)."""
@@ -70,18 +78,19 @@ def true_motion(form: WeakForm) -> FloatArray:
     return smooth(form.position, form.dt, max(form.dt, SMOOTHING_SHARE * form.kernel.support))
 
 
-def sliding_motion(
+def own_motion(
     form: WeakForm, plant: Plant, start: Start
 ) -> tuple[FloatArray, Residual, FloatArray] | None:
-    """A motion near the measured one that a plant with a rigid contact makes, residual and load.
+    """A motion near the measured one that a plant makes by itself, residual and load.
 
-    None where there is no such contact, or no such motion: nothing drives a machine that is moved,
-    and one with hardly any inertia cannot be simulated in samples.
+    None where there is no such motion: nothing drives a machine that is moved, and one with hardly
+    any inertia cannot be simulated in samples.
 
-    Such a machine stops from one sample to the next. A smoothed motion never does, and what
-    readings make of stops would be no part of the noise.
+    A rigid contact stops from one sample to the next, which a smoothed motion never does, and one
+    that yields answers each wave that smoothing leaves of the counts: what readings make of either
+    would be no part of the noise.
     """
-    if form.springy or form.prescribed or plant.servo:
+    if form.prescribed or plant.servo:
         return None
     try:
         motion, load = nearby_motion(form, plant, start, position=true_motion(form))
@@ -89,14 +98,14 @@ def sliding_motion(
         _logger.info("followed instead of simulated: %s", error)
         return None
 
-    # A contact at rest answers whatever acts on it, noise as well.
-    moves = np.diff(motion) != 0.0
+    # A rigid contact at rest answers whatever acts on it, noise as well.
+    takes = np.ones(len(motion) - 1) if form.springy else np.diff(motion) != 0.0
     inertia = form.own(plant).inertia
 
     def residual(readings: FloatArray, added: FloatArray) -> FloatArray:
-        driving = form.driving_motion(readings)
+        driving = form.driving_motion(readings, load + added[1:])
         short = form.short(plant, start, position=driving, load=load)
-        acted = form.applied_effort(np.zeros_like(load), load + added[1:] * moves)
+        acted = form.applied_effort(np.zeros_like(load), load + added[1:] * takes)
         return short + acted - inertia * form.accelerations(readings, driving)
 
     return motion, residual, load
@@ -115,9 +124,36 @@ def residual_of_readings(form: WeakForm, plant: Plant, start: Start = None) -> F
     start : dict, optional
         Friction state at the first row.
     """
-    slid = sliding_motion(form, plant, start)
+    slid = own_motion(form, plant, start)
     if slid is None:
         return None
     motion, residual, _ = slid
     readings = read_sensor(form, motion, position_noise(form), np.random.default_rng(0))
     return residual(readings, np.zeros(len(motion)))
+
+
+def misled(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> bool:
+    """Whether readings make most of what a contact that yields leaves along them.
+
+    Within its pre-sliding friction goes with the position, and counts are steps of it.
+
+    Parameters
+    ----------
+    plant : Plant
+        Fitted to ``rows``.
+    nuisances : Nuisances
+    rows : sequence of Rows
+        Of the weak form.
+    """
+    if not plant.friction.springy:
+        return False
+    left, made, measured = 0.0, 0.0, 0.0
+    for each in rows:
+        read = residual_of_readings(each.form, plant, nuisances.start(each.index))
+        if read is None:
+            return False
+        own = each.residual(plant, nuisances)[each.mask]
+        effort = each.form.measured_effort(plant)[each.mask]
+        left, measured = left + float(own @ own), measured + float(effort @ effort)
+        made += float(np.sum(finite(read)[each.mask] ** 2))
+    return made > max(MAKES**2 * left, MATTERS**2 * measured)

@@ -32,6 +32,7 @@ def nearby_motion(
     *,
     position: FloatArray | None = None,
     load: FloatArray | None = None,
+    rate: float | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """A motion near the measured one that the plant makes by itself, and what that took.
 
@@ -62,7 +63,7 @@ def nearby_motion(
         It runs away from the measured motion.
     """
     target = form.position if position is None else position
-    rate = min(PULL_RATE / form.kernel.support, STEADY / form.dt)
+    rate = min(rate or PULL_RATE / form.kernel.support, STEADY / form.dt)
     inertia = form.own(plant).inertia
     # The pull acts on what the motor turns at once, and sampled it must not shake that either.
     inertia *= min(1.0, STEADY * (1.0 - _behind_a_shaft(plant)) / (rate * form.dt))

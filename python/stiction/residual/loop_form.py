@@ -112,7 +112,7 @@ class LoopForm(WeakForm):
         seen: FloatArray = np.interp(self.stamps, self._even, made)
         return seen
 
-    def driving_motion(self, readings: FloatArray) -> FloatArray:
+    def driving_motion(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
         """The motion that views look at, from readings of a position; same shape."""
         return self._seen(super().driving_motion, readings)
 

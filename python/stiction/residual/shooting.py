@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
-from dataclasses import replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
@@ -98,7 +95,6 @@ class ShootingForm(WeakForm):
     def __init__(
         self, plant: Plant, recording: Recording, *, horizon: float, overlap: float = MOST_OVERLAP
     ) -> None:
-        self._leader: Plant | None = None
         self.unit: float | FloatArray = 1.0
         super().__init__(plant, recording, support=horizon, every=horizon / overlap)
         self._begin_with(plant)
@@ -141,61 +137,8 @@ class ShootingForm(WeakForm):
         """Leader and inertia, all windows alike."""
         stated = "inertia" in plant.body
         self.unit = self.own(plant).inertia if stated else 1.0
-        if stated and self._is_rigid(plant):
-            self._leader = plant
-            self.denoise(self.noise)
-
-    @property
-    def leads(self) -> bool:
-        """Whether windows begin in the motion that a plant makes near the measured one."""
-        return self._leader is not None
-
-    @cached_property
-    def _led(self) -> list[Self]:
-        """The same led by other plants, the last ones of them."""
-        return []
-
-    def with_leader(self, leader: Plant | None) -> Self:
-        """The recording with windows that begin in the motion that a plant makes near it.
-
-        What a plant lacks makes its run late, by up to what is missing over its inertia and the
-        square of the rate of the pull: windows of a plant that lacks nothing must not begin there.
-        """
-        if leader is None or leader is self._leader or self._leader is None:
-            return self
-        for known in self._led:
-            if known._leader is leader:
-                return known
-        other = copy(self)
-        other._leader = leader
-        other.denoise(self.noise)
-        self._led.append(other)
-        del self._led[:-MOST_LED]
-        return other
-
-    def _is_rigid(self, plant: Plant) -> bool:
-        """Whether pre-sliding is over within a count."""
-        friction = plant.friction.parameters
-        if not {"coulomb", "initial_stiffness"} <= friction.keys():
-            return not self.springy
-        reach = friction["coulomb"].value / friction["initial_stiffness"].value
-        return reach < max(self.count, self.noise)
-
-    def driving_motion(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
-        """The motion from which windows start, under a load in the place of the recorded one.
-
-        With all of the inertia on the motor: the pull to the readings acts on the motor, damps a
-        mass behind a shaft far more than the shaft does, and shakes it with their noise. Windows
-        that began in such a ring left twice what windows leave that begin without one.
-        """
-        smoothed = super().driving_motion(readings)
-        if self._leader is None:
-            return smoothed
-        try:
-            return nearby_motion(self, _rigid(self._leader), position=smoothed, load=load)[0]
-        except InputError:
-            # Too stiff for the sample time.
-            return smoothed
+        if stated:
+            self.lead(plant)
 
     @property
     def adapts(self) -> bool:
@@ -325,9 +268,3 @@ class ShootingForm(WeakForm):
         except InputError:
             # A trial of a fit that is too stiff for the sample time: it must look bad, not end it.
             return np.full(len(self), np.nan)
-
-
-def _rigid(plant: Plant) -> Plant:
-    """The plant with all of its inertia on the motor."""
-    kept = tuple(each for each in plant.effects if not each.record.swings)
-    return plant if len(kept) == len(plant.effects) else replace(plant, effects=kept)

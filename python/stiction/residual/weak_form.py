@@ -28,6 +28,7 @@ from ..recording.motion import (
     stirs,
     zero_order_hold,
 )
+from .accompanied import nearby_motion
 from .driving import Driving
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ effort: a coarse encoder needs more than 30 ms."""
 ACCELERATION_SHARE: Final = 0.1
 """Where no inertia is stated: share of the acceleration that may be noise."""
 
+MOST_LED: Final = 2
+"""Plants by whose motions friction is driven at a time, beside the first: each holds its own."""
 _CACHED: Final = ("motion", "lateness", "_answers", "_known", "_otherwise", "_led", "stirs")
 """What is computed once from readings and effort."""
 MOSTLY: Final = 0.9
@@ -174,6 +177,8 @@ class WeakForm:
         self.load = np.zeros_like(x) if load is None else zero_order_hold(time, stamps, load)
         self.effort = driven if plant.gain == 1.0 else driven / plant.gain
         self.springy = plant.friction.springy
+        self._leader: Plant | None = None
+        self._pull: float | None = None
         self.readings = x
         self.denoise(noise)
         self.input = np.zeros(len(x) - 1) if self.prescribed else u[:-1]
@@ -192,12 +197,40 @@ class WeakForm:
 
     @property
     def leads(self) -> bool:
-        """Whether windows begin in the motion that a plant makes near the measured one."""
-        return False
+        """Whether friction is driven by the motion that a plant makes near the measured one."""
+        return self._leader is not None
+
+    @cached_property
+    def _led(self) -> list[Self]:
+        """The same led by other plants, the last ones of them."""
+        return []
 
     def with_leader(self, leader: Plant | None) -> Self:
-        """The recording with windows that begin in the motion of a plant; see ``ShootingForm``."""
-        return self
+        """The recording with friction driven by the motion that a plant makes near it.
+
+        What a plant lacks makes its run late, by up to what is missing over its inertia and the
+        square of the rate of the pull: the friction of a plant that lacks nothing must not be
+        driven by that.
+        """
+        if leader is None or leader is self._leader or self._leader is None:
+            return self
+        for known in self._led:
+            if known._leader is leader:
+                return known
+        other = copy(self)
+        other.lead(leader)
+        self._led.append(other)
+        del self._led[:-MOST_LED]
+        return other
+
+    def lead(self, leader: Plant, pull: float | None = None) -> None:
+        """Drives friction by the motion that a plant makes near the measured one.
+
+        ``pull`` is the rate, 1/s, at which its run is drawn to the readings.
+        """
+        self._leader = leader
+        self._pull = pull or self._pull
+        self.denoise(self.noise)
 
     @cached_property
     def _otherwise(self) -> Self:
@@ -302,7 +335,7 @@ class WeakForm:
             other.effort = acted
         else:
             other.load = acted
-        other.position = self.driving_motion(readings)
+        other.position = self.driving_motion(readings, None if self.prescribed else acted[:-1])
         other.acceleration = other.accelerations(readings, other.position)
         return other
 
@@ -394,9 +427,21 @@ class WeakForm:
         drive: FloatArray = motor.follow(self.with_motion(current=given), strict=False)[0]
         return drive
 
-    def driving_motion(self, readings: FloatArray) -> FloatArray:
-        """The motion that drives friction, from readings of a position; same shape."""
-        return self._driving.motion(readings)
+    def driving_motion(self, readings: FloatArray, load: FloatArray | None = None) -> FloatArray:
+        """The motion that drives friction, from readings of a position; same shape.
+
+        Under a load in the place of the recorded one (rows - 1), where a plant makes the motion.
+        """
+        smoothed = self._driving.motion(readings)
+        if self._leader is None:
+            return smoothed
+        try:
+            return nearby_motion(
+                self, _rigid(self._leader), position=smoothed, load=load, rate=self._pull
+            )[0]
+        except InputError:
+            # Too stiff for the sample time.
+            return smoothed
 
     def efforts(self, plant: Plant, start: Start = None) -> tuple[FloatArray, FloatArray]:
         """Measured effort, and what the plant needs for the measured motion; shape (n,) each.
@@ -580,6 +625,16 @@ class WeakForm:
     def _thin(self, values: FloatArray) -> FloatArray:
         thinned: FloatArray = values[:: self.stride]
         return thinned
+
+
+def _rigid(plant: Plant) -> Plant:
+    """The plant with all of its inertia on the motor.
+
+    The pull to the readings acts on the motor, damps a mass behind a shaft far more than the shaft
+    does, and shakes it with their noise.
+    """
+    kept = tuple(each for each in plant.effects if not each.record.swings)
+    return plant if len(kept) == len(plant.effects) else replace(plant, effects=kept)
 
 
 def _commanded(plant: Plant, given: FloatArray, position: FloatArray, dt: float) -> FloatArray:

@@ -191,6 +191,11 @@ class Evidence:
         """Whether rows are those of simulations, not of efforts along the measured motion."""
         return any(form.simulated for form in self.forms)
 
+    @property
+    def leads(self) -> bool:
+        """Whether friction is driven by motions that a plant makes near the measured ones."""
+        return any(form.leads for form in self.forms)
+
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""
         return list(steps(side_by_side(work, items), "recording", len(items)))

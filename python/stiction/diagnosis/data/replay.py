@@ -12,7 +12,7 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ...catalogue import effects
 from ...errors import InputError
-from ...fitting.readings import position_noise, read_sensor, sliding_motion, true_motion
+from ...fitting.readings import own_motion, position_noise, read_sensor, true_motion
 from ...fitting.rows import Nuisances, Rows
 from ...plant import Plant
 from ...residual.accompanied import nearby_motion
@@ -152,9 +152,9 @@ class _Replay:
         elif isinstance(form, ShootingForm):
             motion, residual = _shot(form, plant, start)
         else:
-            slid = sliding_motion(form, plant, start)
-            if slid is not None:
-                return cls(rows, plant, nuisances, *slid)
+            own = own_motion(form, plant, start) if form.leads or not form.springy else None
+            if own is not None:
+                return cls(rows, plant, nuisances, *own)
             motion, residual = _followed(form, plant, start)
         return cls(rows, plant, nuisances, motion, residual)
 
@@ -275,7 +275,7 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
         if form.own(plant).inertia <= 0.0 or hangs_on_load(plant, form):
             raise NoReplayError
         # A contact at rest answers whatever acts on it, noise as well.
-        moves = np.diff(replay.motion, append=replay.motion[-1:]) != 0.0
+        moves = form.springy | (np.diff(replay.motion, append=replay.motion[-1:]) != 0.0)
         acted = np.append(replay.load, replay.load[-1:]) + moves * white
     else:
         start = nuisances.start(rows.index)

@@ -9,10 +9,18 @@ from typing import Final
 import numpy as np
 
 from ...errors import InputError, NotEnoughData
-from ...fitting.first_pass import WORTH_WIDER, Along, FirstPass, first_pass, remaining_share
+from ...fitting.first_pass import (
+    LED_LESS,
+    WORTH_WIDER,
+    Along,
+    FirstPass,
+    first_pass,
+    remaining_share,
+)
 from ...fitting.forms import Through, astray, wider_of, windows_of
 from ...fitting.minimise import MOST_EVALUATIONS
 from ...fitting.pushes import Watch
+from ...fitting.readings import misled
 from ...fitting.rows import count_by
 from ...fitting.sign import sign_error
 from ...fitting.solve import fit_remainder, second_pass
@@ -100,7 +108,8 @@ def _second(plant: Plant, first: FirstPass[Evidence]) -> tuple[Evidence, Model]:
     solution = second_pass(first.solution, evidence.train, most=MOST_EVALUATIONS)
     count_by(solution.plant, evidence.forms)
     evidence.weigh()
-    narrow = not (evidence.simulated or any(form.widened for form in evidence.forms))
+    others = evidence.simulated or evidence.leads
+    narrow = not (others or any(form.widened for form in evidence.forms))
     # Slopes of a first pass are those of other weights.
     ended = Along(first.start, replace(first.solution, slopes=None)) if narrow else None
     base = Model(evidence, solution, along=ended)
@@ -187,6 +196,8 @@ def fit_simulated_baseline(
         Ctrl-C whatever is there, and the solution of the base is interrupted.
     """
     evidence = base.evidence
+    if plant.friction.springy:
+        return _fit_led_baseline(plant, recordings, base, final)
     # Where the last cause makes the contact yield, the others tell nothing against that.
     horizon = windows_of(final.plant, evidence.forms, evidence.train)
     # The last model was tried as well, and fitted on to its end: that is the same one.
@@ -209,6 +220,31 @@ def fit_simulated_baseline(
     except InputError:
         # What was found along the readings stands.
         return None
+
+
+def _fit_led_baseline(
+    plant: Plant, recordings: Sequence[Recording], base: Model, final: Model
+) -> tuple[Evidence, Model, list[Known]] | None:
+    """The base of a contact that yields, along motions of its own; None where that changes little.
+
+    Parameters and return value are those of ``fit_simulated_baseline``.
+    """
+    seen = base.evidence
+    if seen.leads or seen.simulated:
+        return None
+    if final.plant.effects == plant.effects or not misled(final.plant, final.nuisances, seen.train):
+        return None
+    try:
+        evidence, led = fit_baseline(plant, recordings, windows=True, along=_along(base, plant))
+        if led.solution.interrupted:
+            return evidence, led, []
+        other = fit_model(evidence, final.plant, final.nuisances)
+    except InputError:
+        # What was found along the readings stands.
+        return None
+    if remaining_share(other, evidence.train) > LED_LESS * remaining_share(final, seen.train):
+        return None
+    return evidence, led, [Known(other.plant, other.nuisances)]
 
 
 def _along(base: Model, plant: Plant) -> Model | None:
@@ -286,7 +322,7 @@ def fit_joint_baseline(
     Ctrl-C its solution is interrupted.
     """
     wide = any(form.widened for form in evidence.forms)
-    windows = evidence.simulated or None
+    windows = evidence.simulated or evidence.leads or None
     try:
         return fit_baseline(plant, recordings, wide=wide, joined=True, windows=windows)
     except InputError:
