@@ -83,7 +83,7 @@ class Curves:
                 held.append("effort over the position, a turn of it")
         else:
             efforts = steady.position_effort(plant, [0.0])
-        lines = cls._off(plant, numbers)
+        lines = (*cls._off(plant, numbers), *_through_zero(plant, x, y))
         effects = frozenset(
             effect.name
             for effect in plant.effects
@@ -102,6 +102,19 @@ class Curves:
             for name, off in numbers.items()
             if off > ROUNDING * static
         )
+
+
+def _through_zero(plant: Plant, speeds: FloatArray, friction: FloatArray) -> tuple[str, ...]:
+    """What the line between the slowest speeds of both directions leaves out, a sentence."""
+    after = int(np.searchsorted(speeds, 0.0))
+    jump = 0.5 * abs(float(friction[after] - friction[after - 1]))
+    slow = float(speeds[after])
+    if jump <= steady.SEEN * steady.static_level(plant):
+        return ()
+    return (
+        f"friction below {slow:.3g} {plant.position_unit}/s: a line through 0 there, off by up to "
+        f"{jump:.3g} {plant.effort_unit}",
+    )
 
 
 def _at_every_place(plant: Plant, effect: Effect) -> bool:

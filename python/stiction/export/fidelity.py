@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from .._native import played
 from .._support.arrays import FloatArray
 from ..errors import InputError
 from ..fitting import fit
 from ..fitting.forms import HORIZONS_S, KERNELS, Through, as_session, can_be_shot, forms_of
 from ..fitting.recording_starts import fit_starts
 from ..fitting.rows import Mask, Nuisances, Rows, rows_of
+from ..plant.presliding import presliding
+from ..plant.steady import static_level
 from ..recording import Part
 from ..recording.blocks import FEWEST_BLOCKS
 from ..recording.checks import without_failures
@@ -281,7 +284,7 @@ class Bench:
         without = []
         bare = self._bare_starts if self._plant.effects else [None] * len(self._along)
         for (row, start), bare_start in zip(self._along, bare, strict=True):
-            form, mask = row.form, row.mask & _moves(row.form)
+            form, mask = row.form, row.mask & _moves(row.form, self._plant)
             errors[0].append(form.residual(self._plant, start)[mask])
             known = (
                 form.measured_effort(self._plant)
@@ -320,7 +323,10 @@ class Bench:
         unit: str = "",
     ) -> Fidelity:
         if not len(errors[0]):
-            raise InputError(f"{target}: nothing moves in the rows that are held out; give others")
+            raise InputError(
+                f"{target}: nothing slides in the rows that are held out, and of a contact that "
+                "rests or yields a curve says nothing; give recordings with slides"
+            )
         whole, *own = (float(np.mean(left**2)) for left in errors)
         before = float(np.mean(np.concatenate(without) ** 2)) if without else None
         if not np.isfinite([whole, *own, 0.0 if before is None else before]).all():
@@ -434,15 +440,38 @@ def _share(before: float | None, power: float, whole: float) -> float | None:
     return None if before is None else (before - power) / (before - whole)
 
 
-def _moves(form: WeakForm) -> Mask:
-    """Rows in which the machine was seen to move, and a rigid contact in none of its samples rests.
+def _moves(form: WeakForm, plant: Plant) -> Mask:
+    """Rows in which the machine was seen to move, and its contact slides in all of their samples.
 
-    At rest it holds whatever acts on it, of which a curve over the speed says nothing.
+    A contact that rests, or yields since it turned round, holds whatever acts on it, of which a
+    curve over the speed says nothing.
     """
     white = float(np.sqrt(max(form.noise**2 - form.count**2 / 12.0, 0.0)))
     least = MOVES_TIMES * max(form.count, 4.0 * white)
     moves: Mask = np.abs(form.velocity) * form.kernel.support > least
     if form.springy:
-        return moves
+        return moves & _slides(form, plant)
     slides: Mask = moves & (form.mean(1.0 * (np.diff(form.position) == 0.0)) == 0.0)
+    return slides
+
+
+def _slides(form: WeakForm, plant: Plant) -> Mask:
+    """Rows through whose kernel a contact that yields is further from its last turn than it yields.
+
+    Turns of less than the readings tell are none.
+    """
+    # Loaded the one way it has to be unloaded first.
+    reach = 2.0 * presliding(plant.friction, static_level(plant))
+    within = played(form.position, max(form.count, form.noise))
+    way = np.sign(np.diff(within))
+    moving = np.flatnonzero(way)
+    if not len(moving):
+        return np.zeros(len(form), dtype=bool)
+    # The way of the last move, and how far it has gone on so.
+    last = moving[np.maximum(np.searchsorted(moving, np.arange(len(way)), "right") - 1, 0)]
+    turned = np.flatnonzero(np.diff(way[last]) != 0.0) + 1
+    begun = np.concatenate([[0], turned])
+    place = begun[np.searchsorted(begun, np.arange(len(way)), "right") - 1]
+    since = np.abs(form.position[1:] - form.position[place])
+    slides: Mask = form.mean(1.0 * (since < reach)) == 0.0
     return slides

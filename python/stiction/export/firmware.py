@@ -87,7 +87,8 @@ def _held(
     plant: Plant, curves: Curves, effects: tuple[str, ...], *, steps: bool
 ) -> tuple[str, ...]:
     step = "friction step by step: " + " + ".join((plant.friction.law, *effects))
-    inertia = () if plant.prescribed_motion else ("inertia",)
+    moves = not plant.prescribed_motion and plant.inertia > 0.0
+    inertia = ("inertia",) if moves else ()
     return (*((step,) if steps else ()), *curves.held, *inertia, "a disturbance observer")
 
 

@@ -153,7 +153,8 @@ def beside(
     lost = []
     if plant.friction.springy and not yielding:
         lost.append(f"pre-sliding: a contact of {plant.friction.law} yields before it slides")
-    lost += [f"{each.name}: {each.record.summary}" for each in plant.effects if not held(each)]
+    acting = [each for each in plant.effects if _acts(each)]
+    lost += [f"{each.name}: {each.record.summary}" for each in acting if not held(each)]
     limit = float(plant.drive.get("limit", np.inf))
     if np.isfinite(limit) and not limited:
         lost.append(f"the limit of the drive: {limit:.6g} of its input")
@@ -188,6 +189,12 @@ def loop_losses(plant: Plant) -> tuple[str, ...]:
         "the position loop of the servo: give the joint a controller",
         f"damping of {damping:.3g} {unit} by the motor's own voltage: add it to the controller's",
     )
+
+
+def _acts(effect: Effect) -> bool:
+    """Whether an effect does anything: one of its gains is not 0, or it has none."""
+    gains = [effect.parameters[name] for name in effect.record.gains if name in effect.parameters]
+    return not gains or any(each.value != 0.0 for each in gains)
 
 
 def _changes(plant: Plant, effect: Effect, *, directed: bool) -> bool:

@@ -94,7 +94,10 @@ def _mjcf(plants: Mapping[str, Plant], speed: float | None) -> Export:
             f'frictionloss="{friction!r}" {stiff}/>'
         )
     text = "<mujoco>\n" + "\n".join(lines) + "\n</mujoco>\n"
-    held = ("inertia of the rotors as armature", "Coulomb and viscous friction of each joint")
+    bare = [name for name, plant in plants.items() if plant.inertia <= 0.0]
+    lost += [f"{name}: armature, for no rotor_inertia is stated" for name in bare]
+    rotors = () if bare else ("inertia of the rotors as armature",)
+    held = (*rotors, "Coulomb and viscous friction of each joint")
     return Export("mujoco", {"joints.xml": text}, held, tuple(lost), numbers)
 
 

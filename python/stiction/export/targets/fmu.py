@@ -35,6 +35,11 @@ def write(plant: Plant, speed: float) -> Export:
             f"{plant.source}: fmu: a machine whose motion is prescribed has no equation of motion; "
             "export its friction with --to c"
         )
+    if plant.inertia <= 0.0:
+        raise InputError(
+            f"{plant.source}: fmu: the machine has no inertia, and nothing says how it moves; "
+            "state [body] inertia, of a joint of a robot its rotor_inertia"
+        )
     law = plant.friction.law
     if law not in names_of("laws"):
         raise InputError(f"{plant.source}: fmu: {law} has no C yet; --to c has its feed-forward")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.json_text import json_of
-from ...plant.joint import joint_of
+from ...plant.joint import WORTH_SAYING, Joint, joint_of
 from ..curves import Curves
 from ..made import Export
 from ..runs import EffortRun
@@ -38,13 +38,14 @@ def write(plant: Plant, speed: float) -> Export:
         gains["level_rad"] = (0.0 if zero is None else zero.value) + 0.5 * math.pi
     elif plant.weight:
         gains["kG"] = plant.weight / plant.gain
+    lost = (*curves.lost, *_one_line(plant, joint))
     table = {
         "schema": 1,
         "speed": {"velocity": curves.speeds.tolist(), "effort": curves.friction.tolist()},
         "position": {"position": curves.places.tolist(), "effort": curves.efforts.tolist()},
         "gains": gains,
         # People read this file, and not what was printed.
-        "lost": list(curves.lost),
+        "lost": list(lost),
     }
     files = {
         "speed.csv": _csv(("velocity", "effort"), curves.speeds, curves.friction),
@@ -53,7 +54,7 @@ def write(plant: Plant, speed: float) -> Export:
     }
     unit = "A" if plant.servo else "units of the input"
     held = (*curves.held, f"kS, kV, kA and, where it hangs, kG, in {unit}")
-    return Export("table", files, held, curves.lost, curves.numbers | gains)
+    return Export("table", files, held, lost, curves.numbers | gains)
 
 
 def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
@@ -68,6 +69,17 @@ def runs(made: Export, plant: Plant) -> tuple[EffortRun]:
         return found
 
     return (EffortRun("", effort),)
+
+
+def _one_line(plant: Plant, joint: Joint) -> tuple[str, ...]:
+    """What kS and kV, one line for both directions, leave out of friction, a sentence each."""
+    unit, lost = plant.effort_unit, []
+    worth = WORTH_SAYING * max(joint.friction, 1e-300)
+    if joint.one_sided > worth:
+        lost.append(f"kS: friction of the two directions differs by {joint.one_sided:.3g} {unit}")
+    if joint.off > worth:
+        lost.append(f"kS and kV: off by up to {joint.off:.3g} {unit}, at {joint.at:.3g} per s")
+    return tuple(lost)
 
 
 def _csv(names: tuple[str, str], first: np.ndarray, second: np.ndarray) -> str:
