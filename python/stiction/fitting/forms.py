@@ -20,7 +20,7 @@ from ..residual.finite import finite
 from ..residual.loop_form import LoopForm
 from ..residual.shooting import MOST_OVERLAP, ShootingForm
 from ..residual.weak_form import WeakForm
-from .readings import residual_of_readings
+from .readings import ROUNDED, residual_of_readings
 from .rows import Nuisances, Rows
 
 __all__ = [
@@ -85,8 +85,6 @@ NARROW: Final = 1.5
 """Kernels that are wider by no more than this show nothing else."""
 ALIKE: Final = 1e-3
 """Share by which counts and sampling times of one sensor differ."""
-ROUNDED: Final = float(np.sqrt(12.0))
-"""Size of a count over the standard deviation of what rounding to it makes."""
 
 _Each = Callable[[Callable[[Recording], WeakForm], Sequence[Recording]], list[WeakForm]]
 

@@ -44,6 +44,8 @@ MAKES: Final = 0.5
 it: where they make less, something else is most of what is left."""
 MATTERS: Final = 1e-3
 """Share of the measured effort that they must make: less, and it does not matter."""
+ROUNDED: Final = float(np.sqrt(12.0))
+"""Size of a count over the standard deviation of what rounding to it makes."""
 
 Residual = Callable[[FloatArray, FloatArray], FloatArray]
 """From readings, and noise that is added to the effort, to the residual; shapes (rows,)."""
@@ -135,7 +137,8 @@ def residual_of_readings(form: WeakForm, plant: Plant, start: Start = None) -> F
 def misled(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> bool:
     """Whether readings make most of what a contact that yields leaves along them.
 
-    Within its pre-sliding friction goes with the position, and counts are steps of it.
+    Within its pre-sliding friction goes with the position, and counts are steps of it. One that is
+    over within a count is as rigid as these readings tell.
 
     Parameters
     ----------
@@ -145,7 +148,7 @@ def misled(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> bool:
     rows : sequence of Rows
         Of the weak form.
     """
-    if not plant.friction.springy:
+    if not plant.friction.springy or _is_rigid(plant, rows):
         return False
     left, made, measured = 0.0, 0.0, 0.0
     for each in rows:
@@ -157,3 +160,12 @@ def misled(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> bool:
         left, measured = left + float(own @ own), measured + float(effort @ effort)
         made += float(np.sum(finite(read)[each.mask] ** 2))
     return made > max(MAKES**2 * left, MATTERS**2 * measured)
+
+
+def _is_rigid(plant: Plant, rows: Sequence[Rows]) -> bool:
+    """Whether pre-sliding is over within a count, or one that would make as much noise."""
+    friction = plant.friction.parameters
+    if not {"coulomb", "initial_stiffness"} <= friction.keys():
+        return False
+    reach = friction["coulomb"].value / friction["initial_stiffness"].value
+    return reach < float(np.median([max(e.form.count, ROUNDED * e.form.noise) for e in rows]))

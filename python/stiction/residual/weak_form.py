@@ -236,6 +236,8 @@ class WeakForm:
     def _otherwise(self) -> Self:
         other = copy(self)
         other.springy = not self.springy
+        # The run of a contact that yields never rests, and that of a rigid one never yields.
+        other._leader = None
         other.denoise(self.noise)
         return other
 
