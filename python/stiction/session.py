@@ -264,10 +264,8 @@ def load(path: str | Path, *, plant: Plant | None = None, keep_faulty: bool = Fa
         given.instance(plant, Plant, "load: plant", "a Plant, as Plant.load returns it")
     table = read_toml(path, least='plant = "…" and one [[recordings]]')
     source = str(path)
-    if kind_of_table(table) == "plant file":
-        raise InputError(
-            f"{source}: is a plant file, and a recording or a session file is wanted here"
-        )
+    if (kind := kind_of_table(table)) in ("plant file", "robot file"):
+        raise InputError(f"{source}: is a {kind}, and a recording or a session file is wanted here")
     check_keys(table, _TABLES, source)
     if plant is None and "plant" in table:
         named = table["plant"]

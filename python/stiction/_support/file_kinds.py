@@ -44,7 +44,9 @@ def refuse_findings(path: Path) -> None:
 
 
 def kind_of_table(table: Mapping[str, Any]) -> str:
-    """``"plant file"`` or ``"session file"`` by the keys of a TOML file, else ""."""
+    """``"plant file"``, ``"robot file"`` or ``"session file"`` by the keys of a table, else ""."""
+    if "robot" in table:
+        return "robot file"
     plant, session = not _OF_PLANT.isdisjoint(table), not _OF_SESSION.isdisjoint(table)
     if plant is session:
         return ""

@@ -154,7 +154,8 @@ def _servo(plant: Plant) -> _Drive:
         numbers |= {"error_gain_ratio": 1.0, "max_velocity": 1.0 / slowness.value}
     numbers["kp"] = float(drive["proportional"]) / known.error_gain
     numbers["vin"] = float(drive["supply_v"])
-    held.append(f"the loop of the servo, as kp and vin of an {name}")
+    nearest = "" if slow else ", the nearest in limits and supply: a plant does not say which it is"
+    held.append(f"the loop of the servo, as kp and vin of BAM's {name}{nearest}")
     if not math.isclose(limit, known.duty_limit, rel_tol=1e-12):
         lost.append(
             f"duty_limit = {limit:g}: that of BAM's {name} is {known.duty_limit:g}, in its code"

@@ -69,8 +69,10 @@ def compensate(
     from ..plant.begins import load_begins
     from ..recording.names import names_of
     from .recording_run import begin_for, stems_of
+    from .sessions import refuse_other_than_session
 
     machine = Plant.load(plant)
+    refuse_other_than_session(session)
     if machine.servo:
         raise InputError(
             f"{plant}: the drive of a servo takes a goal and nothing beside it, so that nothing "

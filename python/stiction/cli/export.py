@@ -63,6 +63,7 @@ def export(
     from ..plant import Plant
     from ..robot.robot import describes_robot
     from .robot import export_arm
+    from .sessions import refuse_other_than_session
 
     known = targets()
     if list:
@@ -81,6 +82,8 @@ def export(
         export_arm(plant, to, speed, check, where, as_json=json)
         return
     read = Plant.load(plant)
+    if check is not None:
+        refuse_other_than_session(check)
     loaded = None if check is None else sessions.load(check, plant=read)
     if speed is None and loaded is not None:
         speed = recorded_speed(loaded.recordings)

@@ -16,7 +16,13 @@ from ..plant.plant_file import read_toml
 from ..recording.names import names_of
 from ..session import Session
 
-__all__ = ["load_session", "name_file_in_errors", "refuse_overwrite", "repairs_of"]
+__all__ = [
+    "load_session",
+    "name_file_in_errors",
+    "refuse_other_than_session",
+    "refuse_overwrite",
+    "repairs_of",
+]
 
 
 def load_session(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Plant]:
@@ -27,15 +33,26 @@ def load_session(path: Path, *, keep_faulty: bool = False) -> tuple[Session, Pla
     InputError
         As for ``stiction.load``; a session without a plant, or another file in place of one.
     """
+    refuse_other_than_session(path)
+    session = sessions.load(path, keep_faulty=keep_faulty)
+    if session.plant is None:
+        raise InputError(f'{path}: plant is missing; write plant = "plant.toml"')
+    return session, session.plant
+
+
+def refuse_other_than_session(path: Path) -> None:
+    """Refuses a file that is taken for a session by mistake.
+
+    Raises
+    ------
+    InputError
+        It is a recording, a plant or a robot's file.
+    """
     if kind := _kind_of(path):
         raise InputError(
             f"{path}: is a {kind}, and a session file is wanted, which names plant and "
             "recordings; stiction init writes one"
         )
-    session = sessions.load(path, keep_faulty=keep_faulty)
-    if session.plant is None:
-        raise InputError(f'{path}: plant is missing; write plant = "plant.toml"')
-    return session, session.plant
 
 
 def _kind_of(path: Path) -> str:

@@ -99,13 +99,12 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
             f"{path}: cannot be read ({error.strerror}); check the path and its rights"
         ) from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: is not text in UTF-8; save it as UTF-8") from None
+        raise InputError(
+            _another_kind(path) or f"{path}: is not text in UTF-8; save it as UTF-8"
+        ) from None
     except tomllib.TOMLDecodeError as error:
-        if kind := kind_of(path):
-            raise InputError(
-                f"{path}: is a {kind}, and a plant or session file (TOML) is wanted here; stiction "
-                "init writes both"
-            ) from None
+        if told := _another_kind(path):
+            raise InputError(told) from None
         raise InputError(f"{path}: is not TOML: {error}; {_mend(text, str(error))}") from None
     except InputError:
         raise
@@ -116,6 +115,13 @@ def read_toml(path: Path, *, least: str = "[friction] law") -> dict[str, Any]:
     if not table:
         raise InputError(f"{path}: is empty; state at least {least}")
     return table
+
+
+def _another_kind(path: Path) -> str:
+    """What a file is that is no TOML and known otherwise, a sentence; "" of others."""
+    kind = kind_of(path)
+    wanted = "a plant or session file (TOML) is wanted here; stiction init writes both"
+    return f"{path}: is a {kind}, and {wanted}" if kind else ""
 
 
 def _near(path: Path) -> str:
@@ -187,6 +193,11 @@ def parse(table: Mapping[str, Any], source: str) -> Parts:
     if kind_of_table(table) == "session file":
         raise InputError(
             f"{source}: is a session file, and a plant file is wanted; give the one that it names"
+        )
+    if "robot" in table:
+        raise InputError(
+            f"{source}: is the file of a robot, and a plant of one axis is wanted here; stiction "
+            "export writes one of each joint"
         )
     _check_tables(table, source)
     motion_table = section(table, "motion", source)

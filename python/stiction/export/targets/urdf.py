@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ...plant.joint import body_losses, joint_of, loop_losses, losses_of, sidecar
 from ..made import Export
@@ -14,17 +14,20 @@ if TYPE_CHECKING:
 
 SUMMARY = "<dynamics damping friction> of a joint, and a JSON file with the rest"
 
+LIMITS: Final = "limits of the slide: URDF asks for some, and a plant knows none; write your own"
+
 
 def write(plant: Plant, speed: float) -> Export:
     """A robot of one joint; its ``<dynamics>`` goes into the joint that people have."""
     joint = joint_of(plant, speed)
+    kind = "continuous" if plant.motion == "rotary" else "prismatic"
     lost = (
         *losses_of(plant, joint),
         "inertia of the rotor: a URDF joint has none",
         *body_losses(plant),
         *loop_losses(plant),
+        *(() if kind == "continuous" else (LIMITS,)),
     )
-    kind = "continuous" if plant.motion == "rotary" else "prismatic"
     limit = (
         ""
         if kind == "continuous"
