@@ -319,3 +319,29 @@ def test_a_plant_that_is_moved_has_friction_but_no_joint():
     )
     assert moved.export("table").numbers["kS"] == pytest.approx(0.3)
     assert moved.export("mujoco").numbers["armature"] == 0.0
+
+
+def test_a_machine_without_inertia_is_no_fmu_and_one_is_told_what_to_state():
+    still = st.Plant.from_dict(
+        {"drive": {"input": "torque_nm"}, "body": {"inertia": 0.0}, "friction": DRY}
+    )
+    with pytest.raises(st.InputError, match=r"fmu: the machine has no inertia.*state \[body\]"):
+        still.export("fmu")
+    assert "inertia" not in still.export("c").held
+
+
+def test_lines_through_zero_and_for_both_directions_say_what_they_lose():
+    lost = " / ".join(plant(DRY, UNEVEN).export("table", speed=5.0).lost)
+    assert "friction below 0.005 rad/s: a line through 0 there, off by up to 0.3" in lost
+    assert "kS: friction of the two directions differs by 0.06" in lost
+    assert "below 0.005 rad/s" in " / ".join(plant(DRY).export("c", speed=5.0).lost)
+
+
+def test_an_effect_that_does_nothing_is_no_loss():
+    idle = {"name": "torque_bias", "bias": 0.0}
+    for name in ("urdf", "table", "c"):
+        assert not any("torque_bias" in each for each in plant(DRY, idle).export(name).lost)
+
+
+def test_limits_that_urdf_asks_of_a_slide_are_not_those_of_the_plant():
+    assert any(each.startswith("limits of the slide") for each in screw().export("urdf").lost)

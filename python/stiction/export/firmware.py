@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from ..plant.joint import beside
+from ..plant.joint import acts, beside
 from .contact_source import ContactSource, collapse_blank_lines, plant_numbers, prologue
 from .curves import Curves
 from .fragments import Fragments, names_of
@@ -102,9 +102,10 @@ def _lost(
     def held(effect: Effect) -> bool:
         return effect.name in effects or effect.name in curves.effects
 
+    idle = {effect.name for effect in plant.effects if not acts(effect)}
     ahead = tuple(
         f"{name}: in the step, not in the feed-forward"
         for name in effects
-        if name not in curves.effects
+        if name not in curves.effects and name not in idle
     )
     return (*beside(plant, held, limited=False, yielding=True), *ahead, *curves.lines)

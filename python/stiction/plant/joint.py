@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Joint",
+    "acts",
     "beside",
     "body_losses",
     "head_of",
@@ -153,7 +154,7 @@ def beside(
     lost = []
     if plant.friction.springy and not yielding:
         lost.append(f"pre-sliding: a contact of {plant.friction.law} yields before it slides")
-    acting = [each for each in plant.effects if _acts(each)]
+    acting = [each for each in plant.effects if acts(each)]
     lost += [f"{each.name}: {each.record.summary}" for each in acting if not held(each)]
     limit = float(plant.drive.get("limit", np.inf))
     if np.isfinite(limit) and not limited:
@@ -191,7 +192,7 @@ def loop_losses(plant: Plant) -> tuple[str, ...]:
     )
 
 
-def _acts(effect: Effect) -> bool:
+def acts(effect: Effect) -> bool:
     """Whether an effect does anything: one of its gains is not 0, or it has none."""
     gains = [effect.parameters[name] for name in effect.record.gains if name in effect.parameters]
     return not gains or any(each.value != 0.0 for each in gains)
