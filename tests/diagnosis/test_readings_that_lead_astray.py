@@ -148,8 +148,11 @@ def test_a_cause_that_freezes_the_machine_is_taken_back() -> None:
     models = [
         builders.model(evidence, each) for each in (known, replace(known, effects=(limited,)))
     ]
-    left = borne_out_in_motion(builders.search("drive_saturation", models=models), evidence)
+    named = builders.search("drive_saturation", models=models)
+    left = borne_out_in_motion(named, evidence)
     assert not left.choices
+    # As much as it gained has no name: it passed all else.
+    assert left.imitated == named.choices[0].winner.gain > 0.0
 
 
 def test_a_cause_is_taken_back_that_is_further_off_than_a_machine_that_hardly_moves() -> None:

@@ -89,7 +89,7 @@ def unnamed_remainder(
         beside = tuple(each for each in _told(left, least) if each.coordinate in touched)
         told = beside if _outweighs(selection, beside) else ()
     if not told and selection.imitated > LEAST_GAIN:
-        # What was refused as an imitation shows that there is something to imitate.
+        # What was refused as an imitation, or for its motion, shows that there is something.
         shown = left.significant_views(0.0)
         where = shown[0].coordinate.name if shown else NO_COORDINATE
         told = (Unexplained(where, selection.imitated),)

@@ -50,7 +50,7 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
     with any fewer, and nearer than one that goes on as it set out: below break-away a contact that
     was fitted to the effort breaks away, and nearly anything is better than that.
     Where rows are simulated anyway the held-out gain says the same; where nothing can be simulated
-    nothing is asked.
+    nothing is asked. What is refused so passed all else: as much as it gained has no name.
 
     Parameters
     ----------
@@ -71,7 +71,9 @@ def borne_out_in_motion(selection: Search, evidence: Evidence) -> Search:
         _logger.info("in motion %s gains %.3f", selection.choices[-1].winner.name, gain)
         if gain > 0.0:
             break
-        selection = selection.without_last(AGAINST)
+        # No machine that was simulated has this cause, and yet it explained something.
+        worth = max(selection.imitated, selection.choices[-1].winner.gain)
+        selection = replace(selection.without_last(AGAINST), imitated=worth)
     return selection
 
 

@@ -33,7 +33,7 @@ class Search:
         Effects that these data could not show.
     imitated : float
         Held-out gain of the best of those that were refused last because they imitate something
-        else: so much is left that has no name.
+        else, or because the motion comes no nearer: so much is left that has no name.
     unseen : dict of str to float
         Effects of which what was fitted leaves no doubt and what decides tells nothing, with the
         share that they explain of what is left there; likeliest first.
