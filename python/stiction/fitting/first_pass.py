@@ -43,6 +43,7 @@ __all__ = [
     "Seen",
     "first_pass",
     "fit_from_data",
+    "is_better_led",
     "remaining_share",
 ]
 
@@ -71,6 +72,9 @@ LEADS_WELL: Final = 1.1
 LED_LESS: Final = 0.8
 """Share of what is left along the readings that a contact may leave along a motion of its own, for
 these to have misled it."""
+LEADS: Final = 0.05
+"""Share of the measured effort that it may leave there at most: the run of a plant that lacks more
+is late by more than its pre-sliding, and leads itself astray."""
 
 
 class Seen(Protocol):
@@ -355,9 +359,14 @@ def _led(
     share, pull, led = [each for each in fits if each[0] <= LEADS_WELL * least][-1]
     for form in other.forms:
         form.lead(leader, pull)
-    if asks and share >= LED_LESS * remaining_share(found, seen.train):
+    if asks and not is_better_led(share, remaining_share(found, seen.train)):
         return seen, _kept(found, led)
     return other, _after(found, led)
+
+
+def is_better_led(led: float, along: float) -> bool:
+    """Whether readings misled a contact, by the shares that it leaves led and along them."""
+    return led < min(LED_LESS * along, LEADS)
 
 
 def _over_windows(

@@ -10,11 +10,11 @@ import numpy as np
 
 from ...errors import InputError, NotEnoughData
 from ...fitting.first_pass import (
-    LED_LESS,
     WORTH_WIDER,
     Along,
     FirstPass,
     first_pass,
+    is_better_led,
     remaining_share,
 )
 from ...fitting.forms import Through, astray, wider_of, windows_of
@@ -242,7 +242,8 @@ def _fit_led_baseline(
     except InputError:
         # What was found along the readings stands.
         return None
-    if remaining_share(other, evidence.train) > LED_LESS * remaining_share(final, seen.train):
+    left = remaining_share(other, evidence.train), remaining_share(final, seen.train)
+    if not is_better_led(*left):
         return None
     return evidence, led, [Known(other.plant, other.nuisances)]
 
