@@ -33,9 +33,12 @@ def look_otherwise(
     where the plant, simulated, follows the motion within its noise, nothing else was missing. What
     is left again and again is none of their making, and may be too fast for a simulation to show
     it: so are readings asked where a simulation from the first knows no cause. And slopes beside a
-    base that has bent itself may show nothing of a cause that readings show.
+    base that has bent itself may show nothing of a cause that readings show. A contact that yields
+    and is led by a motion of its own is asked over windows too: noise of its accelerations, which
+    are those of the readings, pulls an inertia down that hardly shows.
     """
-    if first.interrupted or look.evidence.loop or not look.found.plant.friction.sticks:
+    asks = look.found.plant.friction.sticks or look.evidence.leads
+    if first.interrupted or look.evidence.loop or not asks:
         return first
     try:
         if not first.unsaid:

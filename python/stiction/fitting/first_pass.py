@@ -69,7 +69,7 @@ over a kernel of 40 ms. The faster it is, the more counts shake it, and the less
 the plant lacks."""
 LEADS_WELL: Final = 1.1
 """Share of the least that the fastest of them may leave, which is taken."""
-LED_LESS: Final = 0.8
+LED_LESS: Final = 0.6
 """Share of what is left along the readings that a contact may leave along a motion of its own, for
 these to have misled it."""
 LEADS: Final = 0.05
@@ -143,6 +143,7 @@ def first_pass(
     most: int,
     wide: bool = True,
     windows: bool | None = None,
+    yielding: bool = False,
     along: Along | None = None,
 ) -> FirstPass[S]:
     """Fit a plant to rows of the weak form, and simulated where these do not do.
@@ -167,6 +168,8 @@ def first_pass(
     windows : bool, optional
         Whether readings mislead its friction, where that is known already: a rigid contact is to be
         simulated over windows then, and one that yields led by a motion of its own.
+    yielding : bool
+        Simulate one that yields over windows, too, where that is known.
     along : Along, optional
         Where a pass over the same rows ended that was not simulated: what it did is not done again.
 
@@ -182,7 +185,9 @@ def first_pass(
     try:
         if along is None or windows:
             paths = found.variables.paths
-            known = _simulated(plant, known, paths, again, most=most, windows=windows)
+            known = _simulated(
+                plant, known, paths, again, most=most, windows=windows, yielding=yielding
+            )
         if known.solution.interrupted or not wide:
             return known
         return _wider(plant, known, again, most=most)
@@ -273,17 +278,21 @@ def _simulated(
     *,
     most: int,
     windows: bool | None,
+    yielding: bool,
 ) -> FirstPass[S]:
     """What is known, fitted on by what is simulated where the weak form does not do."""
     seen, found, start = known.seen, known.solution, known.start
     servo = plant.servo
-    tried = None if windows is False else windows_of(found.plant, seen.forms, seen.train)
+    tried = None
+    if windows is not False:
+        tried = windows_of(found.plant, seen.forms, seen.train, yielding=yielding)
     horizon = tried or horizon_of(found.plant, found.nuisances, seen.train, seen.forms)
     if horizon is not None or servo:
         phase(_logger, "fitting it again, simulated")
         other = again(found.plant, Through(horizon=horizon, loop=servo), seen.watch)
-        # Along the measured motion a servo that is not yet understood may lead anywhere.
-        begun = [found.plant, start] if servo else [found.plant]
+        # Along the measured motion a servo that is not yet understood may lead anywhere, and along
+        # readings that mislead it a contact ends in a valley of these.
+        begun = [found.plant, start] if servo or yielding else [found.plant]
         begun = [followable(each, other.forms) for each in begun]
         fitted = launch(begun, paths, other.train, most=most)
         if servo:

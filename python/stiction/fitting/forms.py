@@ -67,6 +67,9 @@ count sets a machine ringing, and of a ring three times as fast as itself the ke
 MOST_WINDOWS: Final = 1_200
 """Windows of a session up to which they overlap as far as their kernel tells anything: those of a
 minute and a half. Longer sessions tell more than enough, and each window costs a simulation."""
+LONGEST_SHOT_S: Final = 150.0
+"""Duration of a session, s, up to which a contact that yields is searched over windows: that is ten
+times as dear as along a motion, and minutes beyond."""
 LEAST_WINDOWS: Final = 4.0
 """Windows that the shortest recording must hold."""
 MUCH_LEFT: Final = 0.1
@@ -246,7 +249,9 @@ def ringing_horizon(plant: Plant, rows: Sequence[Rows]) -> float:
     return float(np.clip(max(drifts, rings), *HORIZONS_S))
 
 
-def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) -> float | None:
+def windows_of(
+    plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows], *, yielding: bool = False
+) -> float | None:
     """Over how long a rigid contact should be simulated beside the weak form, None for not at all.
 
     It turns round with the reading, whatever that is off by: whether that matters is known once
@@ -261,6 +266,8 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) ->
         Of all recordings.
     rows : sequence of Rows
         That it was fitted to.
+    yielding : bool
+        Also of a contact that yields, where a session is not too long for it.
 
     Returns
     -------
@@ -269,7 +276,14 @@ def windows_of(plant: Plant, forms: Sequence[WeakForm], rows: Sequence[Rows]) ->
         is counted by it tells nothing, and a machine that follows from one sample to the next is
         slow to simulate.
     """
-    if not plant.friction.sticks or not can_be_shot(plant, forms):
+    if not can_be_shot(plant, forms):
+        return None
+    if yielding and plant.friction.springy:
+        known = {"coulomb", "initial_stiffness"} <= plant.friction.parameters.keys()
+        lasted = sum(form.dt * len(form.readings) for form in forms)
+        able = known and lasted <= LONGEST_SHOT_S and shows_its_ring(plant, forms)
+        return ringing_horizon(plant, rows) if able else None
+    if not plant.friction.sticks:
         return None
     if any(REMEMBERS in effect.record.law_terms for effect in plant.effects):
         # The contact yields by its effect.

@@ -51,6 +51,7 @@ def fit_baseline(
     wide: bool = False,
     joined: bool = False,
     windows: bool | None = None,
+    yielding: bool = False,
     along: Model | None = None,
 ) -> tuple[Evidence, Model]:
     """A session and the base that is fitted to its rows of train.
@@ -58,8 +59,8 @@ def fit_baseline(
     The way is that of `stiction.fit`: a first pass from starts that the data give, a second with
     recordings weighted by what the first left in each. Wider kernels (see ``wider_of``) are tried
     with ``wide`` alone: what a cause explains through narrow ones must not be averaged away.
-    ``joined`` as in ``Evidence``, ``windows`` as in ``first_pass``; ``along`` is a base
-    that was fitted along the readings before, of the same plant, its rows that test unopened.
+    ``joined`` as in ``Evidence``, ``windows`` and ``yielding`` as in ``first_pass``; ``along`` is a
+    base that was fitted along the readings before, of the same plant, its rows that test unopened.
 
     Returns
     -------
@@ -73,7 +74,15 @@ def fit_baseline(
     NotEnoughData
         As for ``Evidence``; a base that lost the inertia that the motion shows.
     """
-    first = _first(plant, recordings, wide=wide, joined=joined, windows=windows, along=along)
+    first = _first(
+        plant,
+        recordings,
+        wide=wide,
+        joined=joined,
+        windows=windows,
+        yielding=yielding,
+        along=along,
+    )
     return _second(plant, first)
 
 
@@ -85,6 +94,7 @@ def _first(
     joined: bool,
     windows: bool | None,
     along: Model | None,
+    yielding: bool = False,
 ) -> FirstPass[Evidence]:
     """The first pass of a base."""
 
@@ -98,6 +108,7 @@ def _first(
         most=MOST_EVALUATIONS,
         wide=wide,
         windows=windows,
+        yielding=yielding,
         along=None if along is None else along.along,
     )
 
@@ -303,10 +314,12 @@ def fit_baseline_over_windows(
         The same fitted along the readings, with all causes that were found.
     """
     evidence = base.evidence
-    if windows_of(final.plant, evidence.forms, evidence.train) is None:
+    if windows_of(final.plant, evidence.forms, evidence.train, yielding=True) is None:
         return None
     try:
-        simulated = fit_baseline(plant, recordings, windows=True, along=_along(base, plant))
+        simulated = fit_baseline(
+            plant, recordings, windows=True, yielding=True, along=_along(base, plant)
+        )
     except InputError:
         return None
     return simulated if simulated[0].simulated else None
@@ -325,7 +338,14 @@ def fit_joint_baseline(
     wide = any(form.widened for form in evidence.forms)
     windows = evidence.simulated or evidence.leads or None
     try:
-        return fit_baseline(plant, recordings, wide=wide, joined=True, windows=windows)
+        return fit_baseline(
+            plant,
+            recordings,
+            wide=wide,
+            joined=True,
+            windows=windows,
+            yielding=evidence.simulated,
+        )
     except InputError:
         return None
 
