@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -10,8 +11,10 @@ import pytest
 
 import stiction as st
 from stiction.diagnosis.screening.base import fit_baseline
+from stiction.fitting.forms import windows_of
 from stiction.fitting.readings import misled
 from stiction.fitting.rows import Nuisances
+from stiction.plant.parameter import Parameter
 from stiction.residual.weak_form import WeakForm
 
 REACH = 1e-4
@@ -110,13 +113,15 @@ def test_a_drawn_contact_is_not_simulated() -> None:
     assert not evidence.simulated
 
 
-def test_parameters_are_those_of_the_machine() -> None:
-    """Along counts of a tenth of its reach the contact seemed nine times as stiff."""
-    true = {"coulomb": 0.61, "initial_stiffness": 158.5, "exponent": 1.0, "viscous": 0.56}
-    raw = {"drive": {"input": "torque_nm"}, "friction": {"law": "dahl", **true}}
-    machine = st.Plant.from_dict(raw | {"body": {"inertia": 0.041}})
+SPRING = {"coulomb": 0.61, "initial_stiffness": 158.5, "exponent": 1.0, "viscous": 0.56}
+
+
+@cache
+def slow(number: int) -> list[st.Recording]:
+    """A machine of .041 kg·m² whose inertia hardly shows, at 250 Hz and ten counts to its reach."""
+    machine = replace(yielding("dahl", **SPRING), body={"inertia": Parameter(0.041)})
     found = []
-    for k in range(3):
+    for k in range(number):
         rng = np.random.default_rng([68, k])
         time = np.arange(2500) * 4e-3
         hertz, phase = rng.uniform(0.1, 2.0, 4), rng.uniform(0.0, 2.0 * np.pi, 4)
@@ -125,8 +130,27 @@ def test_parameters_are_those_of_the_machine() -> None:
         count = 2.0 * np.pi / 16384
         readings = count * np.round(np.concatenate([[0.0], position]) / count)
         found.append(st.Recording(time, input=given, position=readings, kind="sines"))
-    stated = {"law": "dahl", "exponent": {"value": 1.0, "fixed": True}}
-    _, base = fit_baseline(st.Plant.from_dict(raw | {"friction": stated}), found)
+    return found
+
+
+def stated() -> st.Plant:
+    """Its law alone."""
+    exponent = {"value": 1.0, "fixed": True}
+    return replace(yielding("dahl", exponent=exponent), body={})
+
+
+def test_parameters_are_those_of_the_machine() -> None:
+    """Along counts of a tenth of its reach the contact seemed nine times as stiff."""
+    _, base = fit_baseline(stated(), slow(3))
     friction = base.plant.friction.parameters
     assert base.plant.inertia == pytest.approx(0.041, rel=0.02)
     assert friction["initial_stiffness"].value == pytest.approx(158.5, rel=0.1)
+
+
+def test_a_long_session_is_not_searched_over_windows() -> None:
+    plant = yielding("lugre", **TRUE)
+    evidence, base = fit_baseline(yielding("lugre"), read("lugre", 17.0))
+    rows = evidence.train
+    assert windows_of(plant, evidence.forms, rows) is None
+    assert windows_of(base.plant, evidence.forms, rows, yielding=True) is not None
+    assert windows_of(base.plant, 6 * list(evidence.forms), rows, yielding=True) is None
