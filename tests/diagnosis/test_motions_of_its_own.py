@@ -12,7 +12,7 @@ import pytest
 import stiction as st
 from stiction.diagnosis.screening.base import fit_baseline
 from stiction.fitting.forms import windows_of
-from stiction.fitting.readings import misled
+from stiction.fitting.readings import readings_mislead
 from stiction.fitting.rows import Nuisances
 from stiction.plant.parameter import Parameter
 from stiction.residual.weak_form import WeakForm
@@ -74,20 +74,20 @@ def test_a_cause_is_found_though_counts_mislead_beside_it() -> None:
     assert [cause.name for cause in found.effects] == ["cogging"]
     assert found.effects[0].decided
     assert found.verdict == "missing_effect"
-    assert "near the readings by itself" in found.data["residual"]
+    assert "motion of its own" in found.data["residual"]  # over windows, where it stays unexplained
 
 
 def test_readings_that_are_fine_lead_a_contact_themselves() -> None:
     evidence, base = fit_baseline(yielding("maxwell_slip"), read("maxwell_slip", 3000.0))
     assert not evidence.leads
-    assert not misled(base.plant, base.nuisances, evidence.train)
+    assert not readings_mislead(base.plant, base.nuisances, evidence.train)
     evidence, _ = fit_baseline(yielding("lugre"), read("lugre", 17.0))
     assert evidence.leads
     assert not evidence.simulated
 
 
 def test_a_contact_that_is_rigid_is_asked_over_windows_instead() -> None:
-    assert not misled(yielding("coulomb", coulomb=0.3, viscous=0.02), Nuisances(), [])
+    assert not readings_mislead(yielding("coulomb", coulomb=0.3, viscous=0.02), Nuisances(), [])
 
 
 def test_friction_of_a_plant_that_is_right_goes_with_its_own_motion() -> None:
@@ -117,15 +117,15 @@ SPRING = {"coulomb": 0.61, "initial_stiffness": 158.5, "exponent": 1.0, "viscous
 
 
 @cache
-def slow(number: int) -> list[st.Recording]:
-    """A machine of .041 kg·m² whose inertia hardly shows, at 250 Hz and ten counts to its reach."""
+def slow(number: int, fastest: float, size: float = 0.4, seed: int = 68) -> list[st.Recording]:
+    """Sines of a machine of .041 kg·m² up to a rate, at 250 Hz and ten counts to its reach."""
     machine = replace(yielding("dahl", **SPRING), body={"inertia": Parameter(0.041)})
     found = []
     for k in range(number):
-        rng = np.random.default_rng([68, k])
+        rng = np.random.default_rng([seed, k])
         time = np.arange(2500) * 4e-3
-        hertz, phase = rng.uniform(0.1, 2.0, 4), rng.uniform(0.0, 2.0 * np.pi, 4)
-        given = 0.4 * np.sin(2.0 * np.pi * time[:, None] * hertz + phase).sum(axis=1)
+        hertz, phase = rng.uniform(0.05, fastest, 4), rng.uniform(0.0, 2.0 * np.pi, 4)
+        given = size * np.sin(2.0 * np.pi * time[:, None] * hertz + phase).sum(axis=1)
         position = machine.motor().simulate(given[:-1], 4e-3).position
         count = 2.0 * np.pi / 16384
         readings = count * np.round(np.concatenate([[0.0], position]) / count)
@@ -141,10 +141,19 @@ def stated() -> st.Plant:
 
 def test_parameters_are_those_of_the_machine() -> None:
     """Along counts of a tenth of its reach the contact seemed nine times as stiff."""
-    _, base = fit_baseline(stated(), slow(3))
+    _, base = fit_baseline(stated(), slow(3, 2.0))
     friction = base.plant.friction.parameters
     assert base.plant.inertia == pytest.approx(0.041, rel=0.02)
     assert friction["initial_stiffness"].value == pytest.approx(158.5, rel=0.1)
+
+
+@pytest.mark.parametrize(("fastest", "size"), [(0.5, 0.4), (0.3, 0.5)])
+def test_windows_are_asked_where_an_inertia_hardly_shows(fastest: float, size: float) -> None:
+    """Noise of the accelerations pulls it down by a sixth; led so, a sure delay made up for it."""
+    found = st.diagnose(stated(), slow(5, fastest, size, seed=69), threads=1)
+    assert found.verdict == "nothing_missing"
+    assert "simulated from the measured state" in found.data["residual"]
+    assert found.baseline.parameters["body.inertia"].value == pytest.approx(0.041, rel=0.02)
 
 
 def test_a_long_session_is_not_searched_over_windows() -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 from .._support.progress import phase
 from ..errors import InputError
+from ..fitting.readings import readings_mislead
 from .adequacy.bursts import recurs
 from .data.evidence import Evidence
 from .findings.conclude import TOLD_BY, Conclusion, surrogates_of
@@ -34,11 +35,10 @@ def look_otherwise(
     is left again and again is none of their making, and may be too fast for a simulation to show
     it: so are readings asked where a simulation from the first knows no cause. And slopes beside a
     base that has bent itself may show nothing of a cause that readings show. A contact that yields
-    and is led by a motion of its own is asked over windows too: noise of its accelerations, which
-    are those of the readings, pulls an inertia down that hardly shows.
+    is asked over windows where readings mislead it: those stay in its accelerations also where it
+    is led by a motion of its own, and pull an inertia down that hardly shows.
     """
-    asks = look.found.plant.friction.sticks or look.evidence.leads
-    if first.interrupted or look.evidence.loop or not asks:
+    if first.interrupted or look.evidence.loop or not _may_be_astray(look):
         return first
     try:
         if not first.unsaid:
@@ -69,6 +69,14 @@ def look_otherwise(
     except KeyboardInterrupt:
         first.interrupted = first.brief = True
         return first
+
+
+def _may_be_astray(look: Searched) -> bool:
+    """Whether readings may make what has no name."""
+    seen, base = look.evidence, look.base
+    if look.found.plant.friction.sticks or seen.leads:
+        return True
+    return not seen.simulated and readings_mislead(base.plant, base.nuisances, seen.train)
 
 
 def _seen_along(

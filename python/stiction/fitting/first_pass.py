@@ -20,11 +20,9 @@ from .forms import (
     LEAST_LEFT,
     Through,
     astray,
-    can_be_shot,
     followable,
     horizon_of,
     restore_bounds,
-    ringing_horizon,
     shows_its_ring,
     stiffen,
     wider_of,
@@ -32,7 +30,7 @@ from .forms import (
 )
 from .minimise import Solution, launch, or_from, with_interruption
 from .pushes import Watch
-from .readings import misled
+from .readings import readings_mislead
 from .rows import Nuisances, Rows, count_by
 from .start import complete, free_paths, with_light_friction, yielding_starts
 
@@ -75,6 +73,11 @@ these to have misled it."""
 LEADS: Final = 0.05
 """Share of the measured effort that it may leave there at most: the run of a plant that lacks more
 is late by more than its pre-sliding, and leads itself astray."""
+
+DILUTED: Final = 0.02
+"""Share by which noise may pull down an inertia that is fitted along the run: with one that is too
+low by more than a few hundredths the run is late, and a delay of the input makes up for it."""
+INERTIA: Final = "body.inertia"
 
 
 class Seen(Protocol):
@@ -337,7 +340,7 @@ def _may_be_misled(known: FirstPass[S], windows: bool | None) -> bool:
     found = known.solution
     if windows is False or found.interrupted or not found.plant.friction.springy:
         return False
-    return bool(windows) or misled(found.plant, found.nuisances, known.seen.train)
+    return bool(windows) or readings_mislead(found.plant, found.nuisances, known.seen.train)
 
 
 def _led(
@@ -356,7 +359,8 @@ def _led(
     """
     phase(_logger, "fitting it again, along motions of its own")
     seen, found = known.seen, known.solution
-    leader = _over_windows(known, paths, again, most=most)
+    over = _over_windows(known, paths, again, most=most)
+    leader = found.plant if over is None else restore_bounds(over[1].plant, found.plant)
     other = again(found.plant, KERNELS, seen.watch)
     fits: list[tuple[float, float, Solution]] = []
     for pull in PULLS:
@@ -368,9 +372,42 @@ def _led(
     share, pull, led = [each for each in fits if each[0] <= LEADS_WELL * least][-1]
     for form in other.forms:
         form.lead(leader, pull)
+    if dilution(led, other.train) > DILUTED:
+        # Over windows no acceleration is read.
+        led_by = (found.plant, found.nuisances, seen.train)
+        if over is not None and (
+            not asks or astray(*led_by, (over[1].plant, over[1].nuisances), over[0].train)
+        ):
+            stiffen(over[0].forms, over[1].plant)
+            return over[0], _after(found, over[1])
+        return seen, _kept(found, led)
     if asks and not is_better_led(share, remaining_share(found, seen.train)):
         return seen, _kept(found, led)
     return other, _after(found, led)
+
+
+def dilution(solution: Solution, rows: Sequence[Rows]) -> float:
+    """Share by which noise of the readings pulls down an inertia that is fitted; 0 of a stated one.
+
+    Accelerations are those of the readings, and what they hold of noise takes no effort (errors in
+    variables): an inertia comes out too low by that share of what no other parameter explains.
+    """
+    paths = solution.variables.paths
+    if INERTIA not in paths:
+        return 0.0
+    noise, sums = 0.0, np.zeros((len(paths), len(paths)))
+    for each in rows:
+        start = solution.nuisances.start(each.index)
+        slopes = each.weight * each.form.jacobian(solution.plant, paths, start)[each.mask]
+        sums += slopes.T @ slopes
+        own = each.weight * each.form.noise * each.form.kernel.roughness
+        noise += len(slopes) * own**2
+    place = list(paths).index(INERTIA)
+    others = [k for k in range(len(paths)) if k != place]
+    beside = sums[np.ix_(others, [place])]
+    explained, *_ = np.linalg.lstsq(sums[np.ix_(others, others)], beside, rcond=None)
+    left = float(sums[place, place] - (beside.T @ explained).item())
+    return noise / max(left, noise, 1e-300)
 
 
 def is_better_led(led: float, along: float) -> bool:
@@ -384,22 +421,21 @@ def _over_windows(
     again: Callable[[Plant, Through, Watch], S],
     *,
     most: int,
-) -> Plant:
-    """The plant as a simulation over windows has it; as it is known where there is none.
+) -> tuple[S, Solution] | None:
+    """The session over windows and the plant that is fitted to these; None where there are none.
 
     Along readings that mislead it a fit ends in a valley of these.
     """
     plant, seen = known.solution.plant, known.seen
-    stated = {"coulomb", "initial_stiffness"} <= plant.friction.parameters.keys()
-    if not (stated and can_be_shot(plant, seen.forms) and shows_its_ring(plant, seen.forms)):
-        return plant
-    through = Through(horizon=ringing_horizon(plant, seen.train))
-    other = again(plant, through, seen.watch)
+    horizon = windows_of(plant, seen.forms, seen.train, yielding=True)
+    if horizon is None:
+        return None
+    other = again(plant, Through(horizon=horizon), seen.watch)
     begun = [followable(each, other.forms) for each in (plant, known.start)]
     fitted = launch(begun, paths, other.train, most=most)
     if not shows_its_ring(fitted.plant, other.forms) or _lost(fitted, other.train) is not None:
-        return plant
-    return restore_bounds(fitted.plant, plant)
+        return None
+    return other, fitted
 
 
 def _wider(

@@ -518,7 +518,7 @@ def residual_sentence(forms: Sequence[WeakForm], plant: Plant) -> str:
             "(shooting), because the readings of the position are too coarse to drive friction: "
             + (
                 f"pre-sliding is over within {FEWEST_COUNTS:.0f} of their steps."
-                if plant.friction.springy
+                if plant.friction.springy and not _fine(plant, forms)
                 else "led along them, it leaves much that it does not leave along a motion of its "
                 "own."
             )

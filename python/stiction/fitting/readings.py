@@ -19,10 +19,10 @@ from .rows import Nuisances, Rows
 
 __all__ = [
     "Residual",
-    "misled",
     "own_motion",
     "position_noise",
     "read_sensor",
+    "readings_mislead",
     "residual_of_readings",
     "true_motion",
 ]
@@ -134,7 +134,7 @@ def residual_of_readings(form: WeakForm, plant: Plant, start: Start = None) -> F
     return residual(readings, np.zeros(len(motion)))
 
 
-def misled(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> bool:
+def readings_mislead(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -> bool:
     """Whether readings make most of what a contact that yields leaves along them.
 
     Within its pre-sliding friction goes with the position, and counts are steps of it. One that is

@@ -193,8 +193,11 @@ class Evidence:
 
     @property
     def leads(self) -> bool:
-        """Whether friction is driven by motions that a plant makes near the measured ones."""
-        return any(form.leads for form in self.forms)
+        """Whether friction is driven by motions that a plant makes near the measured ones.
+
+        Of simulations they are where a window begins, and no more.
+        """
+        return any(form.leads and not form.simulated for form in self.forms)
 
     def each(self, work: Callable[[_Item], _Result], items: Sequence[_Item]) -> list[_Result]:
         """Results of some work on each item, in their order, on as many threads as allowed."""

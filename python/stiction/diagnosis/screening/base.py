@@ -20,7 +20,7 @@ from ...fitting.first_pass import (
 from ...fitting.forms import Through, astray, wider_of, windows_of
 from ...fitting.minimise import MOST_EVALUATIONS
 from ...fitting.pushes import Watch
-from ...fitting.readings import misled
+from ...fitting.readings import readings_mislead
 from ...fitting.rows import count_by
 from ...fitting.sign import sign_error
 from ...fitting.solve import fit_remainder, second_pass
@@ -243,12 +243,16 @@ def _fit_led_baseline(
     seen = base.evidence
     if seen.leads or seen.simulated:
         return None
-    if final.plant.effects == plant.effects or not misled(final.plant, final.nuisances, seen.train):
+    if final.plant.effects == plant.effects or not readings_mislead(
+        final.plant, final.nuisances, seen.train
+    ):
         return None
     try:
         evidence, led = fit_baseline(plant, recordings, windows=True, along=_along(base, plant))
         if led.solution.interrupted:
             return evidence, led, []
+        if not evidence.leads:
+            return None
         other = fit_model(evidence, final.plant, final.nuisances)
     except InputError:
         # What was found along the readings stands.
