@@ -49,6 +49,8 @@ def nearby_motion(
         Takes the place of the motion that drives friction.
     load : numpy.ndarray, shape (rows - 1,), optional
         Takes the place of what was recorded to act beside the input.
+    rate : float, optional
+        At which it is drawn back, 1/s; without it ten times over the support of the kernel.
 
     Returns
     -------

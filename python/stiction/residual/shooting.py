@@ -48,9 +48,9 @@ class ShootingForm(WeakForm):
     friction, and errors of the readings are noise of the output alone. Each window starts at the
     smoothed measured position and velocity, with friction, effects and clock as they are after
     following the measured motion up to there, and runs with the measured input over the support
-    of the kernel. Where the contact is rigid the measured motion is smoothed once more by a run of
-    the plant that is drawn to it (see ``nearby_motion``): it stops where a machine would. The
-    residual is
+    of the kernel. The measured motion is smoothed once more by a run of the plant that is drawn to
+    it (see ``nearby_motion``): a rigid contact stops where a machine would, and within a count one
+    that yields does so as far as its effort takes it. The residual is
 
         r = J₀·K''∗x̂ − J₀·K''∗x,
 
