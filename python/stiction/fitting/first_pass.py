@@ -16,6 +16,7 @@ from ..plant import Plant
 from ..recording.names import names_of
 from ..residual.weak_form import WeakForm
 from .forms import (
+    ASTRAY,
     KERNELS,
     LEAST_LEFT,
     Through,
@@ -67,9 +68,6 @@ over a kernel of 40 ms. The faster it is, the more counts shake it, and the less
 the plant lacks."""
 LEADS_WELL: Final = 1.1
 """Share of the least that the fastest of them may leave, which is taken."""
-LED_LESS: Final = 0.6
-"""Share of what is left along the readings that a contact may leave along a motion of its own, for
-these to have misled it."""
 LEADS: Final = 0.05
 """Share of the measured effort that it may leave there at most: the run of a plant that lacks more
 is late by more than its pre-sliding, and leads itself astray."""
@@ -412,7 +410,7 @@ def dilution(solution: Solution, rows: Sequence[Rows]) -> float:
 
 def is_better_led(led: float, along: float) -> bool:
     """Whether readings misled a contact, by the shares that it leaves led and along them."""
-    return led < min(LED_LESS * along, LEADS)
+    return led < min(ASTRAY * along, LEADS)
 
 
 def _over_windows(

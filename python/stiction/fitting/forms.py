@@ -20,7 +20,7 @@ from ..residual.finite import finite
 from ..residual.loop_form import LoopForm
 from ..residual.shooting import MOST_OVERLAP, ShootingForm
 from ..residual.weak_form import WeakForm
-from .readings import ROUNDED, residual_of_readings
+from .readings import MATTERS, ROUNDED, counts_in_reach, residual_of_readings, step_of
 from .rows import Nuisances, Rows
 
 __all__ = [
@@ -82,8 +82,6 @@ noise of the effort that is left either way, and the weak form sees what is fast
 stands still."""
 SHOWS: Final = 0.01
 """Share of the measured effort that accelerations must take for windows to be counted by them."""
-MATTERS: Final = 1e-3
-"""Share of the measured effort that it must leave there: less, and it does not matter."""
 NARROW: Final = 1.5
 """Kernels that are wider by no more than this show nothing else."""
 ALIKE: Final = 1e-3
@@ -554,16 +552,7 @@ def residual_sentence(forms: Sequence[WeakForm], plant: Plant) -> str:
 
 def _fine(plant: Plant, forms: Sequence[WeakForm]) -> bool:
     """Whether readings resolve the reach of pre-sliding, so that friction can be driven by them."""
-    friction = plant.friction.parameters
-    if not {"coulomb", "initial_stiffness"} <= friction.keys():
-        return True
-    reach = friction["coulomb"].value / friction["initial_stiffness"].value
-    return reach >= FEWEST_COUNTS * float(np.median([_step(form) for form in forms]))
-
-
-def _step(form: WeakForm) -> float:
-    """Count of the readings, or the one that would make as much noise as they have."""
-    return max(form.count, ROUNDED * form.noise)
+    return counts_in_reach(plant, forms) >= FEWEST_COUNTS
 
 
 def _size(parts: Sequence[FloatArray]) -> float:
@@ -578,5 +567,5 @@ def _time(plant: Plant, form: WeakForm) -> float:
     effort = abs(plant.gain) * noise_of(form.effort)
     if effort <= 0.0:
         return HORIZONS_S[1]
-    moved = plant.inertia * _step(form) / ROUNDED
+    moved = plant.inertia * step_of(form) / ROUNDED
     return float((moved / (effort * np.sqrt(form.dt / 3.0))) ** (2.0 / 3.0))

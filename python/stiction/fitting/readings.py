@@ -19,11 +19,13 @@ from .rows import Nuisances, Rows
 
 __all__ = [
     "Residual",
+    "counts_in_reach",
     "own_motion",
     "position_noise",
     "read_sensor",
     "readings_mislead",
     "residual_of_readings",
+    "step_of",
     "true_motion",
 ]
 
@@ -148,7 +150,7 @@ def readings_mislead(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -
     rows : sequence of Rows
         Of the weak form.
     """
-    if not plant.friction.springy or _is_rigid(plant, rows):
+    if not plant.friction.springy or counts_in_reach(plant, [each.form for each in rows]) < 1.0:
         return False
     left, made, measured = 0.0, 0.0, 0.0
     for each in rows:
@@ -162,10 +164,16 @@ def readings_mislead(plant: Plant, nuisances: Nuisances, rows: Sequence[Rows]) -
     return made > max(MAKES**2 * left, MATTERS**2 * measured)
 
 
-def _is_rigid(plant: Plant, rows: Sequence[Rows]) -> bool:
-    """Whether pre-sliding is over within a count, or one that would make as much noise."""
+def counts_in_reach(plant: Plant, forms: Sequence[WeakForm]) -> float:
+    """Steps of the readings, or of as much noise, in the reach of pre-sliding; inf without one."""
     friction = plant.friction.parameters
     if not {"coulomb", "initial_stiffness"} <= friction.keys():
-        return False
+        return np.inf
     reach = friction["coulomb"].value / friction["initial_stiffness"].value
-    return reach < float(np.median([max(e.form.count, ROUNDED * e.form.noise) for e in rows]))
+    step = float(np.median([step_of(form) for form in forms]))
+    return reach / step if step > 0.0 else np.inf
+
+
+def step_of(form: WeakForm) -> float:
+    """Count of the readings, or the one that would make as much noise as they have."""
+    return max(form.count, ROUNDED * form.noise)
