@@ -69,7 +69,7 @@ def _distance(made, seen, clean, base):
         # Every sample has the same noise: weights of recordings are of no use here.
         signal.append(np.sqrt(own.form.stride) * moved[own.mask])
     weights = np.concatenate([np.full(int(r.mask.sum()), r.weight) for r in seen.train])
-    columns = base.fitted_columns / weights[:, None]
+    columns = base.fitted_columns.matrix() / weights[:, None]
     signal = np.concatenate(signal)
     scale = np.sqrt(np.sum(columns**2, axis=0))
     live = columns[:, scale > 0.0] / scale[scale > 0.0]

@@ -145,21 +145,34 @@ def _xl330(source: Path, where: Path) -> Path:
     return write_session(where, _servo(drive, body), SERVO_COLUMNS, recordings)
 
 
+def sts3215_logs(source: Path, where: Path, number: int) -> Path:
+    """A session of so many logs, each with the load that it was made with."""
+    recordings = []
+    for entry in _servo_logs(source, lambda header: True)[:number]:
+        load = json.loads(Path(entry["file"]).read_bytes())["mass"]
+        recordings.append(entry | {"payload_kg": load + ARM_KG})
+    return _sts3215_session(where, recordings, recordings[0]["payload_kg"])
+
+
 def _sts3215(mass: float, turn: int) -> Callable[[Path, Path], Path]:
     def laid(source: Path, where: Path) -> Path:
-        drive = {
-            "kind": "servo",
-            "proportional": 3.0,
-            "supply_v": 12.0,
-            "resistance_ohm": 3.7,
-            "torque_constant": {"value": 2.0, "min": 0.2, "max": 20.0},
-        }
-        body = {"inertia": 0.02, "payload_kg": mass + ARM_KG, "payload_m": 0.1}
         recordings = _servo_logs(source, lambda header: abs(header["mass"] - mass) < 0.01)
         # Each log and its repeat follow each other.
-        return write_session(where, _servo(drive, body), SERVO_COLUMNS, recordings[turn::2])
+        return _sts3215_session(where, recordings[turn::2], mass + ARM_KG)
 
     return laid
+
+
+def _sts3215_session(where: Path, recordings: list[dict[str, Any]], payload_kg: float) -> Path:
+    drive = {
+        "kind": "servo",
+        "proportional": 3.0,
+        "supply_v": 12.0,
+        "resistance_ohm": 3.7,
+        "torque_constant": {"value": 2.0, "min": 0.2, "max": 20.0},
+    }
+    body = {"inertia": 0.02, "payload_kg": payload_kg, "payload_m": 0.1}
+    return write_session(where, _servo(drive, body), SERVO_COLUMNS, recordings)
 
 
 def _servo(drive: dict[str, Any], body: dict[str, Any]) -> dict[str, dict[str, Any]]:

@@ -59,7 +59,8 @@ def test_what_nothing_explains_moves_no_base() -> None:
     for path, given in step_beside(base, np.zeros(rows)).parameters.items():
         assert given.value == pytest.approx(base.plant.parameters[path].value, rel=1e-12)
     # What is explained in its place by something else it gives up, but for what damping keeps.
-    column = base.columns[:, list(base.solution.variables.paths).index("friction.viscous")]
+    place = list(base.solution.variables.paths).index("friction.viscous")
+    column = base.columns.matrix()[:, place]
     before = base.plant.parameters["friction.viscous"].value
     moved = step_beside(base, 0.01 * before * column).parameters["friction.viscous"].value
     assert 1.005 * before < moved < 1.01 * before

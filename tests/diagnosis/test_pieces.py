@@ -23,6 +23,7 @@ from stiction.diagnosis.findings.result import Diagnosis
 from stiction.diagnosis.findings.verdict import relatives
 from stiction.diagnosis.findings.words import value_words
 from stiction.diagnosis.records import Cause
+from stiction.diagnosis.screening.angular import Angular
 from stiction.diagnosis.screening.candidates import (
     Scales,
     candidates,
@@ -143,14 +144,15 @@ def test_a_fold_leaves_alone_what_its_rows_do_not_tell() -> None:
     # The last column is all but 0 in the rows that the fold fits: they would make a jump of it.
     base[fit, 2] = 1e-5 * source.standard_normal(80)
     residual -= base @ np.linalg.lstsq(base[whole], residual[whole])[0]
-    jumped = project(base, Plan(fit, held)).project(residual).held
+    columns = Angular.of_matrix(base)
+    jumped = project(columns, Plan(fit, held)).project(residual).held
     assert np.linalg.norm(jumped) > 100.0 * np.linalg.norm(residual[held])
-    left = project(base, Plan(fit, held, whole)).project(residual).held
-    expected = project(base[:, :2], Plan(fit, held)).project(residual).held
+    left = project(columns, Plan(fit, held, whole)).project(residual).held
+    expected = project(Angular.of_matrix(base[:, :2]), Plan(fit, held)).project(residual).held
     assert np.allclose(left, expected, atol=0.2)
     assert np.linalg.norm(left) < 1.1 * np.linalg.norm(residual[held])
     # What its rows do tell is fitted as ever.
-    told = source.standard_normal((200, 3))
+    told = Angular.of_matrix(source.standard_normal((200, 3)))
     both = [project(told, Plan(fit, held, w)).project(residual).held for w in (None, whole)]
     assert np.allclose(*both, atol=1e-10)
 
@@ -165,8 +167,9 @@ def test_a_fold_does_not_go_where_the_fit_to_all_rows_may_not() -> None:
 
     def held(residual: np.ndarray) -> np.ndarray:
         session = builders.evidence(fitted=whole)
-        model = builders.model(session, residual=residual, columns=columns)
-        return model.holdout_residual(plan)
+        model = builders.model(session, residual=residual, columns=Angular.of_matrix(columns))
+        (found,) = model.holdout_residuals([plan])
+        return found
 
     # A parameter at its bound leaves a slope that no fit may take: nor may a fold.
     free = noise - columns @ np.linalg.lstsq(columns[whole], noise[whole])[0]

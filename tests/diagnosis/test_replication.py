@@ -10,6 +10,7 @@ from tests.reference.session_reference import make_session
 
 import stiction as st
 from stiction.diagnosis.data.evidence import Plan
+from stiction.diagnosis.screening.angular import Angular
 from stiction.diagnosis.screening.block_gains import lacks_excitation
 from stiction.diagnosis.screening.model import Model
 from stiction.diagnosis.selection.replication import confirms
@@ -38,7 +39,7 @@ def asked(
     own = np.zeros((len(there), 1)) if columns is None else columns
     plans = [Plan(FITTED, ~FITTED, FITTED if folds else None)]
     session = evidence(plans=plans, cells=cells(BLOCK), overlap=6.0)
-    base = model(session, columns=own, residual=there + noise)
+    base = model(session, columns=Angular.of_matrix(own), residual=there + noise)
     after = model(session, residual=there - explained + noise)
     return confirms(base, after, explained, whole=whole)
 
@@ -116,7 +117,7 @@ def test_what_does_little_where_it_is_to_be_confirmed_is_hardly_excited_there(
     def base(folds: bool) -> Model:
         plans = [Plan(FITTED, ~FITTED, FITTED if folds else None)]
         session = evidence(plans=plans, cells=cells(BLOCK))
-        return model(session, columns=columns, residual=left)
+        return model(session, columns=Angular.of_matrix(columns), residual=left)
 
     assert lacks_excitation(base(False), cause, 0.025) == hardly
     assert not lacks_excitation(base(True), cause, 0.025)

@@ -8,6 +8,7 @@ import pytest
 import stiction as st
 from stiction.diagnosis.data.evidence import Plan
 from stiction.diagnosis.defaults import ALPHA
+from stiction.diagnosis.screening.angular import Angular
 from stiction.diagnosis.screening.candidates import Candidate, Scales, candidates
 from stiction.diagnosis.screening.regression import project
 from stiction.diagnosis.screening.screen import FORMS, Problem, Score, _threshold, screen
@@ -22,15 +23,15 @@ NAMES = ("cogging", "torque_bias", "input_delay")
 def test_projection_takes_off_what_the_base_explains_and_the_same_from_held_rows() -> None:
     source = np.random.default_rng(0)
     base = source.standard_normal((200, 3))
-    fit = np.arange(200) < 120
-    projected = project(base, Plan(fit, ~fit)).project(base @ np.array([1.0, -2.0, 3.0]))
+    columns, fit = Angular.of_matrix(base), np.arange(200) < 120
+    projected = project(columns, Plan(fit, ~fit)).project(base @ np.array([1.0, -2.0, 3.0]))
     assert np.allclose(projected.fit, 0.0, atol=1e-10)
     assert np.allclose(projected.held, 0.0, atol=1e-10)
-    other_base = project(base, Plan(fit, ~fit))
+    other_base = project(columns, Plan(fit, ~fit))
     other = other_base.project(source.standard_normal(200))
     assert np.allclose(base[fit].T @ other.fit, 0.0, atol=1e-10)
     many = source.standard_normal((70, 120)).T
-    left, share = other_base.off(many), other_base.directions.T @ many
+    left, share = other_base.off(many), other_base.directions.products(many)
     assert np.allclose(left.T @ left, many.T @ many - share.T @ share, rtol=0.0, atol=1e-12)
 
 
@@ -64,7 +65,7 @@ def screened(
     fit = np.arange(ROWS) < FITTED
     null = np.random.default_rng(3).standard_normal((ROWS, SURROGATES))
     block = np.arange(ROWS) // 20
-    problem = Problem(residual, base, null[fit], block, fit, [Plan(fit, ~fit)])
+    problem = Problem(residual, Angular.of_matrix(base), null[fit], block, fit, [Plan(fit, ~fit)])
     signatures = Signatures.from_columns(every, columns[:, :gains], fit)
     return {score.candidate.name: score for score in screen(problem, signatures, 1.0, alpha)}
 

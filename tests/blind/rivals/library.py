@@ -123,7 +123,8 @@ def library(path):
 def _seen(evidence, model, tried):
     """What the effects would change beside a model."""
     signatures = Signatures.of(evidence, model.plant, model.nuisances, tried)
-    left, sizes, _ = np.linalg.svd(model.columns / _norms(model.columns), full_matrices=False)
+    columns = model.columns.matrix()
+    left, sizes, _ = np.linalg.svd(columns / _norms(columns), full_matrices=False)
     q = left[:, sizes > FLAT * sizes[0]]
     entries, places = [], {}
     for k, candidate in enumerate(signatures.candidates):

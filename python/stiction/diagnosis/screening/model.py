@@ -19,7 +19,7 @@ from ...fitting.likeliest import likeliest
 from ...fitting.minimise import Solution, minimise
 from ...fitting.result import FitResult
 from ...fitting.rows import Nuisances, Rows, timing_bound
-from ...fitting.slopes import places_of, slopes, whole_matrix
+from ...fitting.slopes import Block, places_of, slope_block, slopes
 from ...fitting.solve import evaluate
 from ...fitting.start import free_paths
 from ...fitting.statistics import covariance, differ, jackknife
@@ -30,8 +30,9 @@ from ...residual.finite import finite
 from ..data.evidence import Evidence, Plan
 from ..data.influence import limit_influence
 from ..data.replay import NoReplayError, reread, simulate_alone
+from .angular import Angular
 from .candidates import Candidate
-from .regression import step
+from .folds import over_plans
 
 __all__ = [
     "LEAST_GIVEN",
@@ -109,7 +110,7 @@ class Model:
         return finite(self.evidence.residual(self.plant, self.nuisances))
 
     @cached_property
-    def columns(self) -> FloatArray:
+    def columns(self) -> Angular:
         """Derivatives of ``residual`` by what was fitted and does not stand at a bound."""
         return self._slopes(self.evidence.shown)
 
@@ -118,27 +119,27 @@ class Model:
         self.__dict__.pop("columns", None)
 
     @cached_property
-    def fitted_columns(self) -> FloatArray:
+    def fitted_columns(self) -> Angular:
         """The same of the fitted rows alone."""
         if "columns" in self.__dict__:
-            return self.columns[self.evidence.fitted]
+            return self.columns.of_rows(self.evidence.fitted)
         if self.solution.slopes is None:
             return self._slopes(self.evidence.train)
-        size = len(self.solution.variables.paths) + 1 + len(places_of(self.solution.nuisances))
-        return self._timed(whole_matrix(self.solution.slopes, size))
+        return self._angular(self.solution.slopes)
 
-    def _slopes(self, rows: Sequence[Rows]) -> FloatArray:
+    def _slopes(self, rows: Sequence[Rows]) -> Angular:
         paths = self.solution.variables.paths
         # At the starts of all recordings, by those of the fitted ones.
         places, nuisances = places_of(self.solution.nuisances), self.nuisances
-        blocks = self.evidence.each(lambda r: slopes(r, self.plant, paths, nuisances, places), rows)
-        return self._timed(finite(np.concatenate(blocks)))
+        return self._angular(
+            self.evidence.each(lambda r: slope_block(r, self.plant, paths, nuisances, places), rows)
+        )
 
-    def _timed(self, columns: FloatArray) -> FloatArray:
-        if not self._timing_is_free:
-            columns = columns.copy()
-            columns[:, len(self.solution.variables.paths)] = 0.0
-        return columns
+    def _angular(self, blocks: Sequence[Block]) -> Angular:
+        shared = len(self.solution.variables.paths) + 1
+        size = shared + len(places_of(self.solution.nuisances))
+        columns = Angular.of_blocks(blocks, shared, size)
+        return columns if self._timing_is_free else columns.with_column(shared - 1, 0.0)
 
     @cached_property
     def fit_result(self) -> FitResult:
@@ -206,16 +207,15 @@ class Model:
         own = [paths.index(f"effects.{candidate.name}.{name}") for name in candidate.gains]
         fit, block = self.evidence.fitted, self.evidence.cells.block
         columns, residual = self.fitted_columns, self.residual[fit]
-        scale = np.sqrt(np.sum(columns**2, axis=0))
+        scale = columns.sizes
         scale[self._shape_of(candidate)] = 0.0
         live = np.flatnonzero(scale > 0.0)
-        scaled = columns[:, live] / scale[live]
-        bread = np.linalg.pinv(scaled.T @ scaled, rcond=FLAT, hermitian=True)
+        scaled = columns.scaled(live, 1.0 / np.where(scale > 0.0, scale, 1.0))
+        bread = np.linalg.pinv(scaled.normal(), rcond=FLAT, hermitian=True)
         _, index = np.unique(block[fit], return_inverse=True)
         power: FloatArray = np.bincount(index, residual**2).astype(np.float64)
         (kept,) = limit_influence(power)
-        pushes = np.zeros((len(power), len(live)))
-        np.add.at(pushes, index, scaled * residual[:, None])
+        pushes = scaled.sums_by(index, residual)
         # A block in which the model has lost the machine would make every gain uncertain.
         pushes *= np.sqrt(kept / np.maximum(power, 1e-300))[:, None]
         spread = bread @ pushes.T @ pushes @ bread
@@ -240,17 +240,29 @@ class Model:
     def _timing_is_free(self) -> bool:
         return abs(self.nuisances.timing) < INSIDE * timing_bound(self.plant, self.evidence.train)
 
-    def holdout_residual(self, plan: Plan) -> FloatArray:
-        """Residual of the rows that a plan holds out, fitted on those that it fits.
+    def holdout_residuals(self, plans: Sequence[Plan]) -> list[FloatArray]:
+        """Residual of the rows that each plan holds out, fitted on those that it fits.
 
-        Where the plan fits all of train that is the residual itself; in a fold it is corrected by
+        Where a plan fits all of train that is the residual itself; in a fold it is corrected by
         one Gauss-Newton step from the fit to all of train, less the step that all of train would
         take: a fit that stands at a bound stays there.
         """
-        if np.array_equal(plan.fit, self.evidence.fitted):
-            return self.residual[plan.held]
-        whole = step(self.columns, self.residual, Plan(self.evidence.fitted, plan.held))
-        return step(self.columns, self.residual, plan) + self.residual[plan.held] - whole
+        fitted, residual = self.evidence.fitted, self.residual
+        folds = [plan for plan in plans if not np.array_equal(plan.fit, fitted)]
+        if not folds:
+            return [residual[plan.held] for plan in plans]
+        everything = Plan(fitted, np.ones_like(fitted))
+        whole, *others = (
+            each.held[:, 0]
+            for each in over_plans(self.columns, residual[:, None], [everything, *folds])
+        )
+        moved = iter(others)
+        return [
+            residual[plan.held]
+            if np.array_equal(plan.fit, fitted)
+            else next(moved) + residual[plan.held] - whole[plan.held]
+            for plan in plans
+        ]
 
     @cached_property
     def relative_input_power(self) -> float:
@@ -327,8 +339,9 @@ class Model:
         fit, held = self.evidence.fitted, np.zeros(number)
         train: FloatArray = np.zeros(number)
         train += np.bincount(block[fit], self.residual[fit] ** 2, number)
-        for plan in self.evidence.plans:
-            held += np.bincount(block[plan.held], self.holdout_residual(plan) ** 2, number)
+        plans = self.evidence.plans
+        for plan, residual in zip(plans, self.holdout_residuals(plans), strict=True):
+            held += np.bincount(block[plan.held], residual**2, number)
         return train / self.relative_input_power, held / self.relative_input_power
 
 
@@ -388,13 +401,15 @@ def step_beside(model: Model, explained: FloatArray) -> Plant:
     """
     solution, fit = model.solution, model.evidence.fitted
     variables, number = solution.variables, len(solution.variables.paths)
-    columns = model.columns[fit]
-    columns[:, :number] = variables.chain(columns[:, :number], solution.vector)
-    scale = np.sqrt(np.sum(columns**2, axis=0))
+    columns = model.columns.of_rows(fit)
+    shared = columns.shared.copy()
+    shared[:, :number] = variables.chain(shared[:, :number], solution.vector)
+    columns = columns.with_shared(shared)
+    scale = columns.sizes
     scale[scale == 0.0] = 1.0
-    columns /= scale
-    normal = columns.T @ columns + FIRST_DAMPING * np.eye(len(scale))
-    moved = np.linalg.solve(normal, columns.T @ explained[fit]) / scale
+    columns = columns.scaled(np.arange(columns.size), 1.0 / scale)
+    normal = columns.normal() + FIRST_DAMPING * np.eye(len(scale))
+    moved = np.linalg.solve(normal, columns.products(explained[fit])) / scale
     way = np.where(
         variables.logarithmic, np.clip(moved[:number], -FARTHEST, FARTHEST), moved[:number]
     )

@@ -10,8 +10,9 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ...fitting.rows import Mask
 from ..data.evidence import Plan
+from .angular import Angular
 
-__all__ = ["FLAT", "Base", "Projected", "bounded_gains", "project", "refit_residuals", "step"]
+__all__ = ["FLAT", "Base", "Projected", "bounded_gains", "project", "refit_residuals"]
 
 FLAT: Final = 1e-8
 """Directions of the base with less than this share of the strongest one are dropped."""
@@ -46,55 +47,66 @@ class Base:
     them.
     """
 
-    def __init__(self, columns: FloatArray, plan: Plan) -> None:
-        scale = np.sqrt(np.sum(columns[plan.fit] ** 2, axis=0))
-        live = scale > 0.0
-        self._columns = columns[:, live] / scale[live]
-        whole = self._columns[plan.fit if plan.whole is None else plan.whole]
-        left, sizes, right = np.linalg.svd(whole, full_matrices=False)
-        kept = sizes > FLAT * sizes[0] if len(sizes) else np.zeros(0, dtype=bool)
-        self._left = left[:, kept]
-        self._inverse = right[kept].T / sizes[kept]
+    def __init__(self, columns: Angular, plan: Plan) -> None:
+        self._columns = columns
+        size = self._columns.of_rows(plan.fit).sizes
+        self._live = np.flatnonzero(size > 0.0)
+        self._factor = 1.0 / np.where(size > 0.0, size, 1.0)
+        scaled = self._columns.scaled(self._live, self._factor)
+        whole = plan.fit if plan.whole is None else plan.whole
+        self._left, self._inverse = scaled.of_rows(whole).orthogonalised(FLAT)
+        self._turn: FloatArray | None = None
         if plan.whole is not None:
-            self._left, self._inverse = self._told(plan)
-        self._held = self._columns[plan.held]
+            self._left = self._left.of_rows(plan.fit[plan.whole])
+            self._turn = self._told()
+            self._inverse = self._inverse @ self._turn
         self._plan = plan
 
-    def _told(self, plan: Plan) -> tuple[FloatArray, FloatArray]:
-        """The directions that a fold tells, of those that all rows do."""
-        own = self._columns[plan.fit] @ self._inverse
-        shares, directions = np.linalg.eigh(own.T @ own)
-        kept = directions[:, shares > LEAST_TOLD] / np.sqrt(shares[shares > LEAST_TOLD])
-        return own @ kept, self._inverse @ kept
+    def _told(self) -> FloatArray:
+        """The directions that a fold tells, of those that all rows do; shape (p, told)."""
+        shares, directions = np.linalg.eigh(self._left.normal())
+        told: FloatArray = directions[:, shares > LEAST_TOLD] / np.sqrt(shares[shares > LEAST_TOLD])
+        return told
+
+    def _shares(self, fit: FloatArray) -> FloatArray:
+        found = self._left.products(fit)
+        return found if self._turn is None else self._turn.T @ found
+
+    def _explained(self, shares: FloatArray) -> FloatArray:
+        return self._left.times(shares if self._turn is None else self._turn @ shares)
 
     def off(self, fit: FloatArray) -> FloatArray:
         """Columns of the fitted rows alone, without what the base explains; same shape."""
-        found = self._left @ (self._left.T @ fit)
+        found = self._explained(self._shares(fit))
         return np.subtract(fit, found, out=found)
 
+    def gains(self, fit: FloatArray) -> FloatArray:
+        """Gains of the columns that explain most of the fitted rows, shape (n_fit, …); (p, …)."""
+        own = self._inverse @ self._shares(fit)
+        found = np.zeros((self._columns.size, *own.shape[1:]))
+        found[self._live] = (own.T * self._factor[self._live]).T
+        return found
+
     @property
-    def directions(self) -> FloatArray:
-        """Directions of the base over the fitted rows, each of length 1; shape (n_fit, p)."""
-        return self._left
+    def directions(self) -> Angular:
+        """Directions of the base over the fitted rows, each of length 1."""
+        if self._turn is None:
+            return self._left
+        return Angular.of_matrix(self._left.matrix() @ self._turn)
 
     def project(self, columns: FloatArray) -> Projected:
         """Columns of all rows, shape (n, k) or (n,), without what the base explains."""
         fit, held = columns[self._plan.fit], columns[self._plan.held]
-        share = self._left.T @ fit
-        return Projected(fit - self._left @ share, held - self._held @ (self._inverse @ share))
+        taken = self._columns.of_rows(self._plan.held).times(self.gains(fit))
+        return Projected(self.off(fit), held - taken)
 
 
-def project(base: FloatArray, plan: Plan) -> Base:
+def project(base: Angular, plan: Plan) -> Base:
     """The base of a plan, ready to be projected off."""
     return Base(base, plan)
 
 
-def step(columns: FloatArray, residual: FloatArray, plan: Plan) -> FloatArray:
-    """Residual of the held rows after one Gauss-Newton step on the fitted ones; shape (n_held,)."""
-    return Base(columns, plan).project(residual).held
-
-
-def refit_residuals(columns: FloatArray, residuals: FloatArray, fitted: Mask) -> FloatArray:
+def refit_residuals(columns: Angular, residuals: FloatArray, fitted: Mask) -> FloatArray:
     """Residuals of all rows once the base was fitted to each over the fitted rows; same shape."""
     everywhere = Plan(fitted, np.ones_like(fitted))
     return Base(columns, everywhere).project(residuals).held

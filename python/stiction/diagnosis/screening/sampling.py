@@ -109,15 +109,13 @@ def _is_of_reading(found: AsRead, dt: float) -> bool:
     fit, there = evidence.fitted, base.residual
     late = replace(base.nuisances, timing=base.nuisances.timing + found.ahead * dt)
     shifted = evidence.residual(base.plant, late) - there
-    columns, place = base.columns.copy(), len(base.solution.variables.paths)
-    columns[:, place] = 0.0
-    others = project(columns, Plan(fit, fit))
+    place = len(base.solution.variables.paths)
+    others = project(base.columns.with_column(place, 0.0), Plan(fit, fit))
     own, left = others.off(shifted[fit]), others.off(there[fit])
     gained = float(own @ own)
     if not gained > COUNTS * float(left @ left):
         return False
-    columns[:, place] = shifted
-    beside = project(columns, Plan(fit, fit))
+    beside = project(base.columns.with_column(place, shifted), Plan(fit, fit))
     uneven = added_power(evidence, beside, there, by_pace(evidence, shifted))
     return uneven <= MOST_UNEVEN * gained
 

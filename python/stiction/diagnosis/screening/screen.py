@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -13,7 +14,9 @@ from ..._support.arrays import FloatArray
 from ..data.evidence import Plan
 from ..data.influence import limit_influence
 from ..defaults import ALPHA
+from .angular import Angular
 from .candidates import Candidate
+from .folds import over_plans
 from .regression import bounded_gains, project
 from .signatures import Alike, Signatures
 
@@ -50,7 +53,7 @@ class Problem:
     ----------
     residual : numpy.ndarray, shape (n,)
         Weighted, less the bias that the surrogates show.
-    base : numpy.ndarray, shape (n, p)
+    base : Angular
         Derivatives by the parameters of the base and by nuisances.
     null : numpy.ndarray, shape (n_fit, surrogates)
         Residuals of the fitted rows in which nothing is to be found.
@@ -61,7 +64,7 @@ class Problem:
     """
 
     residual: FloatArray
-    base: FloatArray
+    base: Angular
     null: FloatArray
     block: np.ndarray
     fitted: np.ndarray
@@ -141,8 +144,9 @@ def screen(
     residual, null = base.off(problem.residual[fitted]), base.off(problem.null)
     power = max(float(residual @ residual), 1e-300)
     # All at once: columns are gone through no more often than has to be.
-    products = signatures.products(np.column_stack([residual, base.directions, null]))
-    count = 1 + base.directions.shape[1]
+    directions = base.directions
+    products = signatures.products(np.column_stack([residual, directions.matrix(), null]))
+    count = 1 + directions.size
     within, of_null = products[:, 1:count].T, products[:, count:]
     scan = _Scan.of(signatures, within)
     gains, explained = scan.regress(products[:, 0])
@@ -165,7 +169,7 @@ def screen(
     unexplained = residual - base.off(signatures.columns_of_fit(strongest)) @ gains[strongest]
     null_power = np.maximum(np.sum(null**2, axis=0), 1e-300)
     noise = scan.explained_power(of_null) / null_power
-    turn = _Turned(signatures, base.directions, within, problem.block[fitted], null.shape[1])
+    turn = _Turned(signatures, directions, within, problem.block[fitted], null.shape[1])
     turned = scan.explained_power(turn.products(unexplained)) / power
     own = {form: np.array(forms) == form for form in best}
     thresholds = {form: _threshold(noise[rows], turned[rows], alpha) for form, rows in own.items()}
@@ -294,7 +298,7 @@ class _Turned:
     Attributes
     ----------
     signatures : Signatures
-    directions : numpy.ndarray, shape (n_fit, p)
+    directions : Angular
         Of the base, Q.
     within : numpy.ndarray, shape (p, columns)
         QᵀS.
@@ -304,7 +308,7 @@ class _Turned:
     """
 
     signatures: Signatures
-    directions: FloatArray
+    directions: Angular
     within: FloatArray
     block: np.ndarray
     number: int
@@ -315,8 +319,8 @@ class _Turned:
         blocks = int(self.block.max()) + 1
         signs = source.choice([-1.0, 1.0], (blocks, self.number))
         own = self.signatures.products_by(residual, self.block) @ signs
-        base = np.array([np.bincount(self.block, q * residual, blocks) for q in self.directions.T])
-        found: FloatArray = own - self.within.T @ (base.reshape(-1, blocks) @ signs)
+        base = self.directions.sums_by(self.block, residual)
+        found: FloatArray = own - self.within.T @ (base.T @ signs)
         return found
 
 
@@ -358,15 +362,18 @@ def _heldout(problem: Problem, signatures: Signatures, chosen: Sequence[int]) ->
     number = int(problem.block.max()) + 1
     before = np.zeros(number)
     after = {index: np.zeros(number) for index in chosen}
-    for plan in problem.plans:
-        base = project(problem.base, plan)
-        residual = base.project(problem.residual)
-        block = problem.block[plan.held]
-        before += np.bincount(block, residual.held**2, number)
-        for index in chosen:
-            part = base.project(signatures.whole(index))
-            gains, _ = _measured(part.fit, residual.fit, signatures.candidates[index])
-            left = residual.held - part.held @ gains
+    whole = [signatures.whole(index) for index in chosen]
+    ends = np.cumsum([1, *(each.shape[1] for each in whole)])
+    places = [slice(*within) for within in pairwise(ends.tolist())]
+    targets = np.hstack([problem.residual[:, None], *whole])
+    for plan, part in zip(
+        problem.plans, over_plans(problem.base, targets, problem.plans), strict=True
+    ):
+        block, own = problem.block[plan.held], part.held[:, 0]
+        before += np.bincount(block, own**2, number)
+        for index, place in zip(chosen, places, strict=True):
+            gains, _ = _measured(part.fit[:, place], part.fit[:, 0], signatures.candidates[index])
+            left = own - part.held[:, place] @ gains
             after[index] += np.bincount(block, left**2, number)
     shares = {}
     for index in chosen:

@@ -191,7 +191,8 @@ def _most_alike(simple: Trial, other: Trial) -> FloatArray:
 
 def _columns(trial: Trial) -> tuple[FloatArray, FloatArray]:
     """Slopes of the fitted rows by the gains of a cause, and by all but its own parameters."""
-    columns, paths = trial.model.fitted_columns, list(trial.model.solution.variables.paths)
+    columns = trial.model.fitted_columns.matrix()
+    paths = list(trial.model.solution.variables.paths)
     gains = [paths.index(f"effects.{trial.name}.{name}") for name in trial.candidate.gains]
     own = [k for k, path in enumerate(paths) if path.startswith(f"effects.{trial.name}.")]
     return columns[:, gains], np.delete(columns, own, axis=1)
