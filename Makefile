@@ -77,7 +77,7 @@ lint: $(READY)
 
 # As compiled for the package, so that nothing is compiled twice; with checks of overflow in `make test-slow`.
 rust-tests: $(READY)
-	cargo test --quiet --profile editable
+	cargo test --quiet --release
 
 # Files go over the processor's cores, each whole, for its tests share what was made once; not those of many tests
 # first, or the long ones, which have few, would be left to one core in the end.
@@ -139,9 +139,7 @@ wheel: $(READY)
 install-c:
 	crates/stiction-capi/install.sh $(PREFIX)
 
-# Measures what a wheel has, not the editable build, which is made in less time and is slower.
 bench: $(READY)
-	$(BIN)/maturin develop --quiet --release
 	cargo bench
 	$(BIN)/python benches/step_overhead.py
 

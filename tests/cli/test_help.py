@@ -79,7 +79,7 @@ def test_the_version_says_which_build_this_is(capsys: pytest.CaptureFixture[str]
     assert run(["--version"]) == 0
     first, build_of, threads, stands_on, *extras = capsys.readouterr().out.splitlines()
     assert first == f"stiction {st.__version__}"
-    assert build_of.startswith(("build: release", "build: editable", "build: debug"))
+    assert build_of.startswith(("build: release", "build: debug"))
     assert threads.partition(": ")[2].isdigit()
     assert stands_on.startswith("python 3.")
     assert "dev" not in " ".join(extras).replace(",", " ").split()

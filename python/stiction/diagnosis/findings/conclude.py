@@ -61,6 +61,7 @@ from .bets import Bets, bets_of
 from .loop import borne_out, with_loop_replay
 from .noted import with_checks, with_pushes
 from .pictures import Pictures
+from .pulls import pulls_of_readings
 from .reliability import reliability_of
 from .result import Diagnosis
 from .told import (
@@ -367,7 +368,8 @@ class Conclusion:
         base, final = selection.models[0], selection.models[-1]
         floor = floor_of(evidence, null if self.brief else self._replays(final)[0])
         scales = scales_of(evidence, base.plant)
-        results = {id(m): evaluate(m, scales) for m in (base, final)}
+        pulls = {} if self.brief else pulls_of_readings(final)
+        results = {id(base): evaluate(base, scales), id(final): evaluate(final, scales, pulls)}
         baseline = summary_of(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)
         extended = summary_of(evidence, final, results[id(final)], test, number, floor)

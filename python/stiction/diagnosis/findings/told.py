@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from ..screening.orders import open_orders
 from ..selection.search import Search
 from .own import own_view
 from .pictures import Stretch
+from .pulls import widened
 from .remedies import meaning_of
 from .verdict import relatives
 from .words import what
@@ -108,8 +110,12 @@ def effect_of(plant: Plant, name: str) -> Effect:
     return next(effect for effect in plant.effects if effect.name == name)
 
 
-def evaluate(model: Model, scales: Scales) -> FitResult:
-    return replace(model.fit_result, parameters=open_orders(model.fit_result.parameters, scales))
+def evaluate(
+    model: Model, scales: Scales, pulls: Mapping[str, float] = MappingProxyType({})
+) -> FitResult:
+    """What a fit says, with intervals as wide as ``pulls_of_readings`` and few periods make them."""
+    told = widened(model.fit_result.parameters, pulls)
+    return replace(model.fit_result, parameters=open_orders(told, scales))
 
 
 def summary_of(

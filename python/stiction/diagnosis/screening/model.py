@@ -125,17 +125,18 @@ class Model:
             return self.columns.of_rows(self.evidence.fitted)
         if self.solution.slopes is None:
             return self._slopes(self.evidence.train)
-        return self._angular(self.solution.slopes)
+        return self.angular(self.solution.slopes)
 
     def _slopes(self, rows: Sequence[Rows]) -> Angular:
         paths = self.solution.variables.paths
         # At the starts of all recordings, by those of the fitted ones.
         places, nuisances = places_of(self.solution.nuisances), self.nuisances
-        return self._angular(
+        return self.angular(
             self.evidence.each(lambda r: slope_block(r, self.plant, paths, nuisances, places), rows)
         )
 
-    def _angular(self, blocks: Sequence[Block]) -> Angular:
+    def angular(self, blocks: Sequence[Block]) -> Angular:
+        """Slopes of recordings as columns; that of a timing offset at its bound is 0."""
         shared = len(self.solution.variables.paths) + 1
         size = shared + len(places_of(self.solution.nuisances))
         columns = Angular.of_blocks(blocks, shared, size)
