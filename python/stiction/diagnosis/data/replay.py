@@ -30,6 +30,7 @@ __all__ = [
     "noise_of",
     "reading_power",
     "reread",
+    "rereads",
     "simulate_alone",
     "surrogate_residuals",
 ]
@@ -255,9 +256,17 @@ def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _
 
 
 def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) -> Rows:
-    """Rows of a recording in which the plant is right and only noise is added.
+    """Rows of a recording in which the plant is right and only noise is added; see ``rereads``."""
+    (found,) = rereads(rows, plant, nuisances, [seed])
+    return found
 
-    Unlike a surrogate they are rows in every respect: what is derived along their motion holds the
+
+def rereads(
+    rows: Rows, plant: Plant, nuisances: Nuisances, seeds: Sequence[Sequence[int]]
+) -> list[Rows]:
+    """The same motion read with noise of each seed.
+
+    Unlike surrogates they are rows in every respect: what is derived along their motion holds the
     noise that their residual holds. Of a machine that is moved, or has a rigid contact.
 
     Raises
@@ -267,24 +276,27 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
         load, in whose place stands what makes it follow.
     """
     replay = _Replay.of(rows, plant, nuisances)
-    form, noise, source = rows.form, replay.noise(), np.random.default_rng(seed)
-    white = noise.effort * source.standard_normal(len(replay.motion))
+    form, inertia = rows.form, rows.form.own(plant).inertia
     if replay.load is None and not form.prescribed:
         raise NoReplayError
     if replay.load is not None:
-        if form.own(plant).inertia <= 0.0 or hangs_on_load(plant, form):
+        if inertia <= 0.0 or hangs_on_load(plant, form):
             raise NoReplayError
         # A contact at rest answers whatever acts on it, noise as well.
-        moves = form.springy | (np.diff(replay.motion, append=replay.motion[-1:]) != 0.0)
-        acted = np.append(replay.load, replay.load[-1:]) + moves * white
+        answers = form.springy | (np.diff(replay.motion, append=replay.motion[-1:]) != 0.0)
+        acted = np.append(replay.load, replay.load[-1:])
     else:
         start = nuisances.start(rows.index)
         needed = form.along(plant, start, position=replay.motion)[1] - form.load[:-1]
         bent = np.gradient(np.gradient(replay.motion, form.dt), form.dt)
-        acted = np.concatenate([needed[:1], needed]) + form.own(plant).inertia * bent + white
-    again = form.reread(replay.read(noise.position, source), acted)
-    found = Rows(plant, again, rows.index, rows.mask)
-    found.weight = rows.weight
+        answers, acted = True, np.concatenate([needed[:1], needed]) + inertia * bent
+    noise, found = replay.noise(), []
+    for seed in seeds:
+        source = np.random.default_rng(seed)
+        white = noise.effort * source.standard_normal(len(replay.motion))
+        again = form.reread(replay.read(noise.position, source), acted + answers * white)
+        found.append(Rows(plant, again, rows.index, rows.mask))
+        found[-1].weight = rows.weight
     return found
 
 

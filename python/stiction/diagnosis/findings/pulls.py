@@ -21,13 +21,13 @@ from ...fitting.rows import Rows
 from ...fitting.slopes import Block, slope_block
 from ...residual.finite import finite
 from ..data.evidence import Plan
-from ..data.replay import NoReplayError, reread
+from ..data.replay import NoReplayError, rereads
 from ..screening.model import Model
 from ..screening.regression import project
 
 __all__ = ["pulls_of_readings", "widened"]
 
-REPLAYS: Final = 6
+REPLAYS: Final = 4
 """Recordings of each that are made: the mean of what they show is known to half of its scatter."""
 SEED: Final = 37
 """Of their noise: always the same."""
@@ -45,7 +45,7 @@ def pulls_of_readings(model: Model) -> dict[str, float]:
     if model.evidence.simulated:
         return {}
     try:
-        steps = np.array([_step(model, number) for number in range(REPLAYS)])
+        steps = _steps(model)
     except (NoReplayError, InputError):
         return {}
     mean, error = np.mean(steps, axis=0), np.std(steps, axis=0, ddof=1) / np.sqrt(REPLAYS)
@@ -70,17 +70,25 @@ def widened(
     return found
 
 
-def _step(model: Model, number: int) -> FloatArray:
-    """Where a fit to recordings of the model's own would go, less its numbers; shape (p,)."""
+def _steps(model: Model) -> FloatArray:
+    """Where fits to recordings of the model's own would go, less its numbers.
+
+    Shape (replays, p).
+    """
     nuisances, paths = model.solution.nuisances, model.solution.variables.paths
 
-    def replayed(rows: Rows) -> tuple[Block, FloatArray]:
-        again = reread(rows, model.plant, nuisances, [SEED, number, rows.index])
-        left = again.weight * again.residual(model.plant, nuisances)[again.mask]
-        return slope_block(again, model.plant, paths, nuisances), finite(left)
+    def replayed(rows: Rows) -> list[tuple[Block, FloatArray]]:
+        seeds = [[SEED, number, rows.index] for number in range(REPLAYS)]
+        found = []
+        for again in rereads(rows, model.plant, nuisances, seeds):
+            left = again.weight * again.residual(model.plant, nuisances)[again.mask]
+            found.append((slope_block(again, model.plant, paths, nuisances), finite(left)))
+        return found
 
-    found = model.evidence.each(replayed, model.evidence.train)
-    columns, left = model.angular([block for block, _ in found]), [own for _, own in found]
-    every = np.ones(sum(map(len, left)), dtype=bool)
-    gains = project(columns, Plan(every, ~every)).gains(np.concatenate(left))
-    return -gains[: len(paths)]
+    steps = []
+    for own in zip(*model.evidence.each(replayed, model.evidence.train), strict=True):
+        columns, left = model.angular([block for block, _ in own]), [rows for _, rows in own]
+        every = np.ones(sum(map(len, left)), dtype=bool)
+        gains = project(columns, Plan(every, ~every)).gains(np.concatenate(left))
+        steps.append(-gains[: len(paths)])
+    return np.array(steps)

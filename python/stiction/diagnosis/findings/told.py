@@ -113,7 +113,7 @@ def effect_of(plant: Plant, name: str) -> Effect:
 def evaluate(
     model: Model, scales: Scales, pulls: Mapping[str, float] = MappingProxyType({})
 ) -> FitResult:
-    """What a fit says, with intervals as wide as ``pulls_of_readings`` and few periods make them."""
+    """What a fit says; intervals reach as far as the readings pull, and further for few periods."""
     told = widened(model.fit_result.parameters, pulls)
     return replace(model.fit_result, parameters=open_orders(told, scales))
 
