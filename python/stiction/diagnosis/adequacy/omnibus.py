@@ -10,9 +10,10 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ..._support.workers import side_by_side
 from ..data.evidence import Evidence
 from .by_recording import BY_RECORDING, by_recording_view
-from .coordinates import COORDINATES, Look
+from .coordinates import COORDINATES, Coordinate, Look
 from .noisy_effort import Noisy
 from .passing import drift_view, moments_view, steady_rows
 from .periodic import COUPLED, ORDERS, Asked, frequency_view, order_views
@@ -98,12 +99,17 @@ def rest(
     cells, weights = evidence.cells, evidence.weights
     spacings = [rows.form.dt * rows.form.stride for rows in evidence.shown]
     noisy = Noisy(evidence, seen, spacings, both)
-    views = [
-        noisy.view(coordinate, partial(smoother, coordinate, evidence, friction=friction))
+    told = [
+        coordinate
         for coordinate in COORDINATES
         if evidence.plant.motion == "rotary" or not coordinate.name.startswith("angle")
         if any(np.any(np.isfinite(coordinate.values(look))) for look in seen)
     ]
+
+    def smoothed(coordinate: Coordinate) -> View:
+        return noisy.view(coordinate, partial(smoother, coordinate, evidence, friction=friction))
+
+    views = list(side_by_side(smoothed, told))
     along = both * direction[:, None]
     asked = [Asked(coordinate, along if coordinate.odd else both) for coordinate in ORDERS]
     asked += [
