@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..._support.arrays import FloatArray
+from ...fitting.rows import Mask
 from ..data.evidence import Evidence
 from .coordinates import Coordinate, Look
 from .view import FEWEST_ROWS, View, limit, means, sums
@@ -30,6 +31,8 @@ TURNS: Final = 40
 """Times that recordings are turned round for the threshold of a slow coordinate."""
 TURNED_QUANTILE: Final = 0.95
 """Of the shares that this gives: a drift that is there keeps its share in few of them."""
+AT_ONCE: Final = 8
+"""Columns that are looked at together: of many rows more would take memory by the hundred MB."""
 ROWS: Final = 150
 """A stretch holds about this many rows at least, where few have a place in a coordinate..."""
 FEWEST_BINS: Final = 6
@@ -72,50 +75,47 @@ def smoother(
         The share is that of the power in rows that have a place in the coordinate.
     """
     values = stack_rows(evidence, [coordinate.values(look) for look in seen])
+    parts = [both[:, k : k + AT_ONCE] for k in range(0, both.shape[1], AT_ONCE)]
+    sign = None
     if coordinate.odd:
-        both = both * stack_rows(evidence, [look.direction for look in seen])[:, None]
+        sign = stack_rows(evidence, [look.direction for look in seen])[:, None]
     factor = np.ones(len(values))
     if coordinate.factor is not None:
         factor = stack_rows(evidence, [coordinate.factor(look) for look in seen])
-    surrogates = both.shape[1]
-    slow = _is_slow(coordinate, evidence)
-    if slow:
-        both = np.column_stack([both, _turned(evidence, both[:, 0])])
     # Rows that have no place in this coordinate lie in a last stretch, of which nothing is taken.
     placed = np.isfinite(values)
     index, bins = _stretches(coordinate, evidence, values, placed, edges)
-    removed, total = np.zeros(both.shape[1]), np.zeros(both.shape[1])
-    rows = 0
-    for plan in evidence.plans:
-        curve = _slopes(index[plan.fit], both[plan.fit], factor[plan.fit], bins)
-        held = both[plan.held]
-        rows += len(held)
-        counted = held[placed[plan.held]] if within else held
-        total += np.sum(counted**2, axis=0)
-        # Σr² − Σ(r − f·c)² from sums over stretches alone.
-        own, place = factor[plan.held], index[plan.held]
-        pushed = sums(place, held * own[:, None], bins + 1)[:bins]
-        power = np.bincount(place, own**2, bins + 1)[:bins, None]
-        removed += np.sum(curve[:bins] * (2.0 * pushed - curve[:bins] * power), axis=0)
-    shares = removed / np.maximum(total, 1e-300)
-    threshold = limit(shares[1:surrogates])
-    if slow:
-        threshold = max(threshold, float(np.quantile(shares[surrogates:], TURNED_QUANTILE)))
-    both = both[:, :surrogates]
-    # In units of effort for the eye: what was weighted is put back.
     shown = np.zeros(len(index), dtype=bool)
     for plan in evidence.plans:
         shown |= plan.held
-    physical = both[shown] / evidence.weights[shown, None]
-    curves = _slopes(index[shown], physical, factor[shown], bins)
+    rows = sum(int(plan.held.sum()) for plan in evidence.plans)
+    powers, curves = [], []
+    for part in parts:
+        own = part if sign is None else part * sign
+        powers.append(_removed(own, index, bins, factor, evidence, placed if within else None))
+        # In units of effort for the eye: what was weighted is put back.
+        own = own[shown]
+        own /= evidence.weights[shown, None]
+        curves.append(_slopes(index[shown], own, factor[shown], bins))
+    removed, total = (np.concatenate(each) for each in zip(*powers, strict=True))
+    shares = removed / np.maximum(total, 1e-300)
+    threshold = limit(shares[1:])
+    if _is_slow(coordinate, evidence):
+        residual = both[:, 0] if sign is None else both[:, 0] * sign[:, 0]
+        turned = [
+            _removed(own, index, bins, factor, evidence, placed if within else None)
+            for own in _turned(evidence, residual)
+        ]
+        reached = np.concatenate([taken / np.maximum(of, 1e-300) for taken, of in turned])
+        threshold = max(threshold, float(np.quantile(reached, TURNED_QUANTILE)))
     full = np.flatnonzero(np.bincount(index[shown], minlength=bins + 1)[:bins] >= FEWEST_ROWS)
-    curves = curves[full]
-    low, high = np.quantile(curves[:, 1:], [0.025, 0.975], axis=1)
+    curve = np.hstack(curves)[full]
+    low, high = np.quantile(curve[:, 1:], [0.025, 0.975], axis=1)
     centres = [float(np.median(values[index == k])) for k in full]
     return View(
         coordinate,
         np.array(centres),
-        curves[:, 0],
+        curve[:, 0],
         low,
         high,
         float(shares[0]),
@@ -124,19 +124,46 @@ def smoother(
     )
 
 
+def _removed(
+    columns: FloatArray,
+    index: np.ndarray,
+    bins: int,
+    factor: FloatArray,
+    evidence: Evidence,
+    within: Mask | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Power that means over stretches take off held rows, of each column, and what there was.
+
+    There was as much as in rows ``within``; in all of them without it.
+    """
+    removed, total = np.zeros(columns.shape[1]), np.zeros(columns.shape[1])
+    for plan in evidence.plans:
+        curve = _slopes(index[plan.fit], columns[plan.fit], factor[plan.fit], bins)
+        held = columns[plan.held]
+        counted = held if within is None else held[within[plan.held]]
+        total += np.sum(counted**2, axis=0)
+        # Σr² − Σ(r − f·c)² from sums over stretches alone.
+        own, place = factor[plan.held], index[plan.held]
+        held *= own[:, None]
+        pushed = sums(place, held, bins + 1)[:bins]
+        power = np.bincount(place, own**2, bins + 1)[:bins, None]
+        removed += np.sum(curve[:bins] * (2.0 * pushed - curve[:bins] * power), axis=0)
+    return removed, total
+
+
 def _is_slow(coordinate: Coordinate, evidence: Evidence) -> bool:
     return coordinate.slow and len(evidence.shown) > 1
 
 
-def _turned(evidence: Evidence, residual: FloatArray) -> FloatArray:
-    """The residual with the sign of each recording drawn anew, a number of times.
+def _turned(evidence: Evidence, residual: FloatArray) -> Iterator[FloatArray]:
+    """The residual with the sign of each recording drawn anew, a number of times; some at a time.
 
     A stretch of the session holds a few recordings. What a law's curve misses pulls one way through
     each of them, and by chance the same way in neighbours: no drift, and no surrogate has it.
     """
     signs = np.random.default_rng(TURNS).choice([-1.0, 1.0], (len(evidence.recordings), TURNS))
-    turned: FloatArray = residual[:, None] * signs[evidence.cells.recording]
-    return turned
+    for k in range(0, TURNS, AT_ONCE):
+        yield residual[:, None] * signs[evidence.cells.recording, k : k + AT_ONCE]
 
 
 def _stretches(

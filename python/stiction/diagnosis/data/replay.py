@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -263,8 +263,8 @@ def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) 
 
 def rereads(
     rows: Rows, plant: Plant, nuisances: Nuisances, seeds: Sequence[Sequence[int]]
-) -> list[Rows]:
-    """The same motion read with noise of each seed.
+) -> Iterator[Rows]:
+    """The same motion read with noise of each seed, one after the other.
 
     Unlike surrogates they are rows in every respect: what is derived along their motion holds the
     noise that their residual holds. Of a machine that is moved, or has a rigid contact.
@@ -290,14 +290,14 @@ def rereads(
         needed = form.along(plant, start, position=replay.motion)[1] - form.load[:-1]
         bent = np.gradient(np.gradient(replay.motion, form.dt), form.dt)
         answers, acted = True, np.concatenate([needed[:1], needed]) + inertia * bent
-    noise, found = replay.noise(), []
+    noise = replay.noise()
     for seed in seeds:
         source = np.random.default_rng(seed)
         white = noise.effort * source.standard_normal(len(replay.motion))
         again = form.reread(replay.read(noise.position, source), acted + answers * white)
-        found.append(Rows(plant, again, rows.index, rows.mask))
-        found[-1].weight = rows.weight
-    return found
+        found = Rows(plant, again, rows.index, rows.mask)
+        found.weight = rows.weight
+        yield found
 
 
 def simulate_alone(rows: Rows, plant: Plant, nuisances: Nuisances) -> Rows:
