@@ -36,6 +36,9 @@ def over_plans(columns: Angular, targets: FloatArray, plans: Sequence[Plan]) -> 
     Projected
         Held rows as they are; of the fitted ones rows that have the same products.
     """
+    if len(plans) == 1:
+        yield Base(columns, plans[0]).project(targets)
+        return
     pieces = _pieces(columns, plans)
     small, turned = _turned(columns, targets, pieces)
     first = np.repeat([int(rows[0]) for rows in pieces], [len(part) for part in turned])
