@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from stiction.diagnosis.data.evidence import Plan
-from stiction.diagnosis.screening.angular import Angular
 from stiction.diagnosis.screening.folds import over_plans
 from stiction.diagnosis.screening.regression import FLAT, project
+from stiction.fitting.angular import Angular
 
 RECORDINGS, EACH, SHARED = 6, 80, 4
 ROWS = RECORDINGS * EACH

@@ -5,7 +5,7 @@ import pytest
 from tests.blind.score import as_plant, as_session
 from tests.reference.session_reference import make_session
 
-from stiction.diagnosis.data.replay import centre, common_bias, surrogate_residuals
+from stiction.diagnosis.data.surrogates import centre, common_bias, surrogate_residuals
 from stiction.diagnosis.screening.base import fit_baseline
 from stiction.recording.motion import Kernel
 from stiction.residual.driving import Driving

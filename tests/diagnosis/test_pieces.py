@@ -18,12 +18,11 @@ from stiction.cli import run
 from stiction.diagnosis.adequacy.periodic import waves_of
 from stiction.diagnosis.data.evidence import Evidence, Plan, SealedError
 from stiction.diagnosis.data.gain import HeldOut, gain_of
-from stiction.diagnosis.data.replay import centre, noise_of, surrogate_residuals
+from stiction.diagnosis.data.surrogates import centre, surrogate_residuals
 from stiction.diagnosis.findings.result import Diagnosis
 from stiction.diagnosis.findings.verdict import relatives
 from stiction.diagnosis.findings.words import value_words
 from stiction.diagnosis.records import Cause
-from stiction.diagnosis.screening.angular import Angular
 from stiction.diagnosis.screening.candidates import (
     Scales,
     candidates,
@@ -38,7 +37,9 @@ from stiction.diagnosis.selection import listing
 from stiction.diagnosis.selection.choose import Choice, choose, strangers
 from stiction.diagnosis.selection.decide import OUT_OF_RANGE, Trial
 from stiction.diagnosis.selection.trials import Screening
+from stiction.fitting.angular import Angular
 from stiction.fitting.levenberg import escape, levenberg_marquardt
+from stiction.fitting.replay import noise_of
 from stiction.fitting.result import FitParameter
 from stiction.fitting.rows import Nuisances
 from stiction.fitting.statistics import interval_width

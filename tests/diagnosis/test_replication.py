@@ -10,10 +10,10 @@ from tests.reference.session_reference import make_session
 
 import stiction as st
 from stiction.diagnosis.data.evidence import Plan
-from stiction.diagnosis.screening.angular import Angular
 from stiction.diagnosis.screening.block_gains import lacks_excitation
 from stiction.diagnosis.screening.model import Model
 from stiction.diagnosis.selection.replication import confirms
+from stiction.fitting.angular import Angular
 
 BLOCKS, ROWS = 40, 200
 FITTED = np.repeat(np.arange(BLOCKS) < 28, ROWS)

@@ -8,11 +8,11 @@ import pytest
 import stiction as st
 from stiction.diagnosis.data.evidence import Plan
 from stiction.diagnosis.defaults import ALPHA
-from stiction.diagnosis.screening.angular import Angular
 from stiction.diagnosis.screening.candidates import Candidate, Scales, candidates
 from stiction.diagnosis.screening.regression import project
 from stiction.diagnosis.screening.screen import FORMS, Problem, Score, _threshold, screen
 from stiction.diagnosis.screening.signatures import Signatures
+from stiction.fitting.angular import Angular
 from stiction.plant.parameter import Parameter
 from stiction.plant.stated import Effect
 

@@ -12,9 +12,10 @@ import stiction as st
 from stiction.bench.ordinary.draw import Spec, ordinary
 from stiction.bench.ordinary.files import write
 from stiction.diagnosis.data.evidence import Evidence
-from stiction.diagnosis.data.replay import noise_of, surrogate_residuals
+from stiction.diagnosis.data.surrogates import surrogate_residuals
 from stiction.diagnosis.screening.model import Model, fit_model
 from stiction.fitting.forms import HORIZONS_S, Through, horizon_of, residual_sentence
+from stiction.fitting.replay import noise_of
 from stiction.fitting.rows import Nuisances
 from stiction.residual.shooting import ShootingForm
 from stiction.residual.weak_form import WeakForm

@@ -21,6 +21,7 @@ from .._support.wording import plural
 from .._support.workers import with_workers
 from ..catalogue import effects
 from ..errors import InputError, NotEnoughData
+from ..fitting.noise import Noise
 from ..plant import Plant
 from ..recording import Check, Recording
 from ..recording.checks import DOUBTED, without_failures
@@ -30,7 +31,6 @@ from ..recording.session_clock import subset
 from ..recording.usable import checks_of, usable
 from ..session import Session, both_of
 from .data.evidence import Evidence
-from .data.noise import Noise
 from .defaults import ALPHA, SMALLEST, SURROGATES
 from .findings.advice import advise
 from .findings.conclude import Conclusion, base_alone

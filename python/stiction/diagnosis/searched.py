@@ -10,8 +10,8 @@ from typing import Final, NamedTuple
 from .._support.arrays import FloatArray
 from .._support.progress import phase
 from ..fitting.forms import residual_sentence
+from ..fitting.noise import Noise
 from .data.evidence import Evidence
-from .data.noise import Noise
 from .findings.conclude import surrogates_of
 from .findings.result import Diagnosis
 from .screening.model import Known, Model

@@ -40,8 +40,8 @@ class FitParameter:
     value, stderr : float
         SI value and standard error, which allows for residuals correlated over 1 s.
     ci95 : tuple of float
-        value ± t·stderr, t of Student with as many degrees as there are blocks of 1 s, less one. Of
-        a diagnosis it reaches to where the value would be without the pull of the readings.
+        value ± t·stderr, t of Student with as many degrees as there are blocks of 1 s, less one;
+        as far as the value would be without the pull of the readings.
     unit : str
     at_bound : {"", "lower", "upper"}
         Which bound the fit ended at, "" where at none.

@@ -32,12 +32,16 @@ __all__ = [
     "rows_of",
     "start_guess",
     "start_quantities",
+    "timing_bound",
+    "timing_is_free",
 ]
 
 WARM_UP_S: Final = 0.2
 """Left out at the start of a recording: what the fitted start does not tell is forgotten then."""
 TIMING_SHARE: Final = 0.5
 """Bound of the timing offset in samples: more than this is a delay of the machine."""
+INSIDE: Final = 0.98
+"""A timing offset beyond this share of its bound is held by the bound."""
 TURNS: Final = ("turned", "turned_again")
 """Start quantities of springs with memory: where the contact turned round before. No row tells of
 them beside a contact that never did; see `fit_turns` of the starts."""
@@ -302,6 +306,11 @@ def timing_bound(plant: Plant, rows: Sequence[Rows]) -> float:
     if any(effect.name in late for effect in plant.effects):
         return 0.0
     return TIMING_SHARE * min(each.form.dt for each in rows)
+
+
+def timing_is_free(timing: float, plant: Plant, rows: Sequence[Rows]) -> bool:
+    """Whether an offset of timing that was fitted is not held by its bound."""
+    return abs(timing) < INSIDE * timing_bound(plant, rows)
 
 
 def add_starts(plant: Plant, rows: Sequence[Rows], nuisances: Nuisances | None = None) -> Nuisances:

@@ -42,6 +42,7 @@ from .minimise import (
     minimise,
     with_interruption,
 )
+from .pulls import pulls_of_readings, widened
 from .pushes import Watch, push_checks
 from .recording_starts import fit_starts, fit_turns
 from .result import FitParameter, FitResult
@@ -213,9 +214,9 @@ def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> 
     names = names_of(recordings)
     pushed = [f"{name}: {c.what}; {c.means}." for name, c in push_checks(seen.pushes, names)]
 
-    def told(found: Solution) -> FitResult:
+    def said(found: Solution) -> FitResult:
         count_by(found.plant, seen.forms)
-        return evaluate(
+        told = evaluate(
             found,
             train,
             seen.held,
@@ -225,13 +226,15 @@ def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> 
             evaluations=evaluations,
             names=names,
         )
+        pulls = {} if found.interrupted else pulls_of_readings(found, train)
+        return replace(told, parameters=widened(told.parameters, pulls))
 
     try:
-        return told(solution)
+        return said(solution)
     except KeyboardInterrupt:
         if solution.interrupted:
             raise
-        return told(with_interruption(solution))
+        return said(with_interruption(solution))
 
 
 def _without_faults(recordings: list[Recording]) -> tuple[list[Recording], list[str]]:

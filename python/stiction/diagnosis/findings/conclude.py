@@ -11,6 +11,8 @@ from typing import Final
 from ..._support.arrays import FloatArray
 from ..._support.progress import phase
 from ..._support.wording import join_words
+from ...fitting.noise import Noise
+from ...fitting.pulls import pulls_of_readings
 from ...fitting.rows import Rows
 from ...fitting.sign import sign_error
 from ...fitting.solve import fit_remainder
@@ -29,8 +31,7 @@ from ..adequacy.view import View
 from ..data.ceiling import Ceiling, ceiling_of
 from ..data.evidence import Evidence
 from ..data.gain import HeldOut, gain_of, residuals_of
-from ..data.noise import Noise
-from ..data.replay import centre, common_bias, surrogate_residuals
+from ..data.surrogates import centre, common_bias, surrogate_residuals
 from ..defaults import SMALLEST
 from ..phrases import INTERRUPTED, MORE_MAY_BE, NO_COORDINATE
 from ..records import LawRow, Unexplained, Verdict
@@ -61,7 +62,6 @@ from .bets import Bets, bets_of
 from .loop import borne_out, with_loop_replay
 from .noted import with_checks, with_pushes
 from .pictures import Pictures
-from .pulls import pulls_of_readings
 from .reliability import reliability_of
 from .result import Diagnosis
 from .told import (
@@ -368,7 +368,7 @@ class Conclusion:
         base, final = selection.models[0], selection.models[-1]
         floor = floor_of(evidence, null if self.brief else self._replays(final)[0])
         scales = scales_of(evidence, base.plant)
-        pulls = {} if self.brief else pulls_of_readings(final)
+        pulls = {} if self.brief else pulls_of_readings(final.solution, evidence.train)
         results = {id(base): evaluate(base, scales), id(final): evaluate(final, scales, pulls)}
         baseline = summary_of(evidence, base, results[id(base)], test, 0, floor)
         number = len(selection.choices)

@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ...fitting.pulls import widened
 from ...fitting.result import FitResult
 from ...plant import Plant
 from ...plant.begins import begins
@@ -24,7 +25,6 @@ from ..screening.orders import open_orders
 from ..selection.search import Search
 from .own import own_view
 from .pictures import Stretch
-from .pulls import widened
 from .remedies import meaning_of
 from .verdict import relatives
 from .words import what

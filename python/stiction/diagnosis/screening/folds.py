@@ -13,9 +13,9 @@ from typing import cast
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ...fitting.angular import Angular
 from ...fitting.slopes import Block
 from ..data.evidence import Plan
-from .angular import Angular
 from .regression import Base, Projected
 
 __all__ = ["over_plans"]

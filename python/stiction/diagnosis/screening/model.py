@@ -12,13 +12,15 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ...catalogue import effects
+from ...fitting.angular import Angular
 from ...fitting.first_pass import Along
 from ...fitting.leading import refit_windows
 from ...fitting.levenberg import FIRST_DAMPING
 from ...fitting.likeliest import likeliest
 from ...fitting.minimise import Solution, minimise
+from ...fitting.replay import NoReplayError, reread, simulate_alone
 from ...fitting.result import FitResult
-from ...fitting.rows import Nuisances, Rows, timing_bound
+from ...fitting.rows import Nuisances, Rows, timing_is_free
 from ...fitting.slopes import Block, places_of, slope_block, slopes
 from ...fitting.solve import evaluate
 from ...fitting.start import free_paths
@@ -29,8 +31,6 @@ from ...plant.stated import Effect
 from ...residual.finite import finite
 from ..data.evidence import Evidence, Plan
 from ..data.influence import limit_influence
-from ..data.replay import NoReplayError, reread, simulate_alone
-from .angular import Angular
 from .candidates import Candidate
 from .folds import over_plans
 
@@ -64,8 +64,6 @@ MOST_TAKEN: Final = 0.5
 leave: what shrinks measured and needed effort alike explains nothing."""
 LEAST_GIVEN: Final = 0.01
 """And what leaves less than this share explains nothing at all."""
-INSIDE: Final = 0.98
-"""A timing offset beyond this share of its bound is held by the bound."""
 
 
 class Known(NamedTuple):
@@ -125,22 +123,23 @@ class Model:
             return self.columns.of_rows(self.evidence.fitted)
         if self.solution.slopes is None:
             return self._slopes(self.evidence.train)
-        return self.angular(self.solution.slopes)
+        return self._angular(self.solution.slopes)
 
     def _slopes(self, rows: Sequence[Rows]) -> Angular:
         paths = self.solution.variables.paths
         # At the starts of all recordings, by those of the fitted ones.
         places, nuisances = places_of(self.solution.nuisances), self.nuisances
-        return self.angular(
+        return self._angular(
             self.evidence.each(lambda r: slope_block(r, self.plant, paths, nuisances, places), rows)
         )
 
-    def angular(self, blocks: Sequence[Block]) -> Angular:
+    def _angular(self, blocks: Sequence[Block]) -> Angular:
         """Slopes of recordings as columns; that of a timing offset at its bound is 0."""
         shared = len(self.solution.variables.paths) + 1
         size = shared + len(places_of(self.solution.nuisances))
         columns = Angular.of_blocks(blocks, shared, size)
-        return columns if self._timing_is_free else columns.with_column(shared - 1, 0.0)
+        free = timing_is_free(self.nuisances.timing, self.plant, self.evidence.train)
+        return columns if free else columns.with_column(shared - 1, 0.0)
 
     @cached_property
     def fit_result(self) -> FitResult:
@@ -236,10 +235,6 @@ class Model:
         """Fitted gains of an effect; shape (q,)."""
         effect = next(each for each in self.plant.effects if each.name == candidate.name)
         return np.array([effect.parameters[name].value for name in candidate.gains])
-
-    @property
-    def _timing_is_free(self) -> bool:
-        return abs(self.nuisances.timing) < INSIDE * timing_bound(self.plant, self.evidence.train)
 
     def holdout_residuals(self, plans: Sequence[Plan]) -> list[FloatArray]:
         """Residual of the rows that each plan holds out, fitted on those that it fits.

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ...catalogue import effects
+from ...fitting.noise import input_noise
 from ...fitting.rows import Rows
-from ..data.noise import input_noise
 from .model import Model
 from .screen import NULL_TIMES
 

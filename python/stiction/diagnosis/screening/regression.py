@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ...fitting.angular import Angular
 from ...fitting.rows import Mask
 from ..data.evidence import Plan
-from .angular import Angular
 
 __all__ = ["FLAT", "Base", "Projected", "bounded_gains", "project", "refit_residuals"]
 

@@ -11,10 +11,10 @@ from typing import Any, Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ...fitting.angular import Angular
 from ..data.evidence import Plan
 from ..data.influence import limit_influence
 from ..defaults import ALPHA
-from .angular import Angular
 from .candidates import Candidate
 from .folds import over_plans
 from .regression import bounded_gains, project

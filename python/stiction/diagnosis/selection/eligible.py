@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from ...catalogue import EffectRecord, effects
+from ...fitting.noise import input_noise
 from ...plant import Plant
 from ..data.evidence import Evidence
-from ..data.noise import input_noise
 from ..records import CandidateRow
 from ..screening.candidates import FALL, Candidate, candidates, present, scales_of
 from ..screening.model import Model

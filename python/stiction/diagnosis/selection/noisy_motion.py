@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from ...catalogue import effects
-from ..data.replay import hangs_on_load
+from ...fitting.replay import hangs_on_load
 from ..screening.block_gains import heldout_gain
 from ..screening.model import Model, fit_model
 from ..screening.screen import NULL_TIMES

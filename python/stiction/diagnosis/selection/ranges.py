@@ -9,9 +9,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ...fitting.noise import input_noise
 from ...fitting.start import largest_command
 from ..data.evidence import Evidence
-from ..data.noise import input_noise
 from ..screening.candidates import Candidate
 from ..screening.model import Model
 

@@ -14,7 +14,7 @@ from ...catalogue import EffectRecord
 from ...fitting.rows import timing_bound
 from ..adequacy.exact_forms import several
 from ..data.evidence import Evidence
-from ..data.replay import centre, common_bias, reading_power
+from ..data.surrogates import centre, common_bias, reading_power
 from ..defaults import ALPHA, SMALLEST
 from ..records import CandidateRow
 from ..screening.candidates import Candidate

@@ -9,12 +9,12 @@ from typing import Final
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
-from ...fitting.readings import position_noise
-from ...fitting.rows import Mask, Nuisances, Rows
-from ...plant import Plant
-from ...recording.motion import GAUSSIAN
-from ...residual.weak_form import WeakForm
+from .._support.arrays import FloatArray
+from ..plant import Plant
+from ..recording.motion import GAUSSIAN
+from ..residual.weak_form import WeakForm
+from .readings import position_noise
+from .rows import Mask, Nuisances, Rows
 
 __all__ = ["Noise", "effort_noise", "input_noise", "measure_noise"]
 

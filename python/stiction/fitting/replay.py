@@ -1,44 +1,35 @@
-"""Surrogates: the residual that noise and rounding alone would leave, by replay of the motion."""
+"""Replays: a motion near the measured one of which all efforts are known, read with noise."""
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
-from ...catalogue import effects
-from ...errors import InputError
-from ...fitting.readings import own_motion, position_noise, read_sensor, true_motion
-from ...fitting.rows import Nuisances, Rows
-from ...plant import Plant
-from ...residual.accompanied import nearby_motion
-from ...residual.loop_form import LoopForm
-from ...residual.shooting import ShootingForm
-from ...residual.weak_form import Start, WeakForm
-from .evidence import Evidence
+from .._support.arrays import FloatArray
+from ..catalogue import effects
+from ..errors import InputError
+from ..plant import Plant
+from ..residual.accompanied import nearby_motion
+from ..residual.loop_form import LoopForm
+from ..residual.shooting import ShootingForm
+from ..residual.weak_form import Start, WeakForm
 from .noise import Noise, effort_noise, measure_noise
+from .readings import own_motion, position_noise, read_sensor, true_motion
+from .rows import Nuisances, Rows
 
 __all__ = [
     "NoReplayError",
-    "centre",
-    "common_bias",
+    "Replay",
     "hangs_on_load",
     "noise_of",
-    "reading_power",
     "reread",
     "rereads",
     "simulate_alone",
-    "surrogate_residuals",
 ]
 
-_logger = logging.getLogger(__name__)
-
-ALIKE: Final = 1e-3
-"""Share by which counts of one sensor differ."""
 MOST_TIMES: Final = 3.0
 """Of an estimate of noise that replays are asked about: with more they tell nothing."""
 TRIED: Final = 2
@@ -53,88 +44,8 @@ _Residual = Callable[[FloatArray, FloatArray], FloatArray]
 """Residual of readings, shape (rows,), and of white noise on the effort, shape (rows,)."""
 
 
-def surrogate_residuals(
-    evidence: Evidence, plant: Plant, nuisances: Nuisances, number: int, seed: int
-) -> tuple[FloatArray, dict[int, Noise]]:
-    """Residuals of recordings in which the plant is right and only noise is added.
-
-    The smoothed motion is followed by the plant, which gives the effort that acted; for shooting
-    the plant is simulated, drawn to the measured motion. Noise is put on the effort, the position
-    gets noise and is rounded to counts, and both go the way of the measured ones: friction driven
-    by the readings, or simulation from them, inertia term, kernel.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    plant : Plant
-    nuisances : Nuisances
-    number : int
-        How many.
-    seed : int
-        Same seed, same surrogates, whatever the number of threads.
-
-    Returns
-    -------
-    numpy.ndarray, shape (n, number)
-        Weighted, of the rows that may be looked at.
-    dict of int to Noise
-        By recording.
-    """
-
-    def measured(rows: Rows) -> tuple[_Replay, Noise]:
-        replay = _Replay.of(rows, plant, nuisances)
-        return replay, replay.noise()
-
-    def replayed(found: tuple[_Replay, Noise]) -> FloatArray:
-        replay, noise = found
-        return replay.rows.weight * replay.columns(noise, number, seed)
-
-    found = evidence.each(measured, evidence.shown)
-    if evidence.simulated:
-        found = _of_one_sensor(found)
-    noises = {replay.rows.index: noise for replay, noise in found}
-    return np.concatenate(evidence.each(replayed, found)), noises
-
-
-def _of_one_sensor(found: Sequence[tuple[_Replay, Noise]]) -> list[tuple[_Replay, Noise]]:
-    """The same with one noise of the position for all that one sensor read, the middle one.
-
-    Where a machine rests between two counts readings show no noise, and then it moves.
-    """
-
-    def alike(one: WeakForm, other: WeakForm) -> bool:
-        return bool(np.isclose(one.count, other.count, rtol=ALIKE) and one.dt == other.dt)
-
-    usual = []
-    for replay, noise in found:
-        form = replay.rows.form
-        own = [each.position for other, each in found if alike(form, other.rows.form)]
-        usual.append((replay, replace(noise, position=float(np.median(own)))))
-    return usual
-
-
-def reading_power(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> float:
-    """Weighted power that readings alone leave a right plant in the rows that were fitted.
-
-    Nothing that a plant may lack is in it: beside one that lacks something fast, what that makes
-    passes for noise of the effort.
-    """
-
-    def power(rows: Rows) -> float:
-        replay = _Replay.of(rows, plant, nuisances)
-        left = [rows.weight * each[rows.mask] for each in replay.alone()]
-        return float(np.mean([each @ each for each in left]))
-
-    return sum(evidence.each(power, evidence.train))
-
-
-def noise_of(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
-    """Noise of one recording beside a plant that describes it."""
-    return _Replay.of(rows, plant, nuisances).noise()
-
-
 @dataclass(frozen=True)
-class _Replay:
+class Replay:
     """A motion that a plant makes, near that of a recording, and the residual of its readings."""
 
     rows: Rows
@@ -145,7 +56,7 @@ class _Replay:
     load: FloatArray | None = None
 
     @classmethod
-    def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> _Replay:
+    def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> Replay:
         rows = rows.with_leader(nuisances)
         form, start = rows.form, nuisances.start(rows.index)
         if isinstance(form, LoopForm):
@@ -255,6 +166,11 @@ def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _
     return motion, residual
 
 
+def noise_of(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
+    """Noise of one recording beside a plant that describes it."""
+    return Replay.of(rows, plant, nuisances).noise()
+
+
 def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) -> Rows:
     """Rows of a recording in which the plant is right and only noise is added; see ``rereads``."""
     (found,) = rereads(rows, plant, nuisances, [seed])
@@ -275,7 +191,7 @@ def rereads(
         A rigid contact that no simulation keeps near the measured motion; a plant that hangs on the
         load, in whose place stands what makes it follow.
     """
-    replay = _Replay.of(rows, plant, nuisances)
+    replay = Replay.of(rows, plant, nuisances)
     form, inertia = rows.form, rows.form.own(plant).inertia
     if replay.load is None and not form.prescribed:
         raise NoReplayError
@@ -340,30 +256,3 @@ def hangs_on_load(plant: Plant, form: WeakForm) -> bool:
     readers = {record.name for record in effects() if "load" in record.channels}
     reads = any(effect.name in readers for effect in plant.effects)
     return reads or plant.friction.law == "load_dependent"
-
-
-def centre(null: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What all surrogates have in common, and each of them less the mean of the others."""
-    number = null.shape[1]
-    bias: FloatArray = null.mean(axis=1)
-    return bias, (null - bias[:, None]) * (number / (number - 1) if number > 1 else 1.0)
-
-
-def common_bias(bias: FloatArray, residual: FloatArray, recording: np.ndarray) -> FloatArray:
-    """What surrogates have in common, in each recording as far as the residual has it too.
-
-    Where a replay loses the machine all of them lose it alike, and the residual knows nothing of
-    it.
-
-    Parameters
-    ----------
-    bias, residual : numpy.ndarray, shape (n,)
-    recording : numpy.ndarray of int, shape (n,)
-        Of each row.
-    """
-    number = int(recording.max()) + 1
-    power = np.bincount(recording, bias**2, number)
-    along = np.bincount(recording, bias * residual, number)
-    share = np.clip(along / np.maximum(power, 1e-300), 0.0, 1.0)
-    found: FloatArray = share[recording] * bias
-    return found

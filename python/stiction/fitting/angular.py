@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
-from ...fitting.rows import Mask
-from ...fitting.slopes import Block
+from .._support.arrays import FloatArray
+from .rows import Mask
+from .slopes import Block
 
 __all__ = ["Angular"]
 
@@ -175,6 +175,16 @@ class Angular:
             turn[np.ix_(places, last)] = -values @ taken
         found = Angular(left[:, kept], last, tuple(own), count)
         return found, turn
+
+    def gains(self, target: FloatArray, flat: float) -> FloatArray:
+        """Least squares, shape (n,): gains of each column, 0 for one that is 0; shape (size,)."""
+        sizes = self.sizes
+        live = np.flatnonzero(sizes > 0.0)
+        factor = 1.0 / np.where(sizes > 0.0, sizes, 1.0)
+        directions, turn = self.scaled(live, factor).orthogonalised(flat)
+        found = np.zeros(self.size)
+        found[live] = factor[live] * (turn @ directions.products(target))
+        return found
 
     def products(self, columns: FloatArray) -> FloatArray:
         """Aᵀ times columns, shape (n,) or (n, k); shape (size, …)."""
