@@ -42,9 +42,9 @@ def targets(seed: int = 1) -> np.ndarray:
 def plans() -> list[Plan]:
     """Recordings left out, parts of recordings left out, and all rows fitted."""
     whole = OF < 5
-    found = [Plan(whole & (k != OF), k == OF, whole) for k in (0, 2, 4)]
+    found = [Plan(whole & (k != OF), np.equal(OF, k), whole) for k in (0, 2, 4)]
     parts = np.arange(ROWS) // 30 % 3
-    found += [Plan(whole & (parts != k), whole & (parts == k), whole) for k in range(3)]
+    found += [Plan(whole & (parts != k), whole & np.equal(parts, k), whole) for k in range(3)]
     return [*found, Plan(whole, np.ones(ROWS, dtype=bool)), Plan(OF < 3, OF >= 3)]
 
 
@@ -58,7 +58,7 @@ def test_it_is_the_matrix_written_out() -> None:
     assert angular.normal() == pytest.approx(whole.T @ whole, rel=1e-12)
     assert angular.sizes == pytest.approx(np.linalg.norm(whole, axis=0), rel=1e-12)
     chosen, factor = np.array([1, 5, 7]), np.arange(1.0, angular.size + 1.0)
-    assert angular.scaled(chosen, factor).matrix() == pytest.approx((whole * factor)[:, chosen])
+    assert angular.scale(chosen, factor).matrix() == pytest.approx((whole * factor)[:, chosen])
     piece, weight = np.arange(ROWS) // 7, targets()[:, 0]
     by_hand = np.array([weight[piece == k] @ whole[piece == k] for k in range(piece[-1] + 1)])
     assert angular.sums_by(piece, weight) == pytest.approx(by_hand, abs=1e-9)
@@ -67,7 +67,7 @@ def test_it_is_the_matrix_written_out() -> None:
 
 def test_directions_span_what_columns_do_and_drop_what_depends() -> None:
     angular, whole = columns()
-    directions, made = angular.orthogonalised(FLAT)
+    directions, made = angular.orthogonal_basis(FLAT)
     found = directions.matrix()
     assert found.T @ found == pytest.approx(np.eye(directions.size), abs=1e-12)
     assert directions.size == angular.size - 1 == np.linalg.matrix_rank(whole)

@@ -10,7 +10,7 @@ import pytest
 import stiction as st
 from stiction.diagnosis.data.evidence import Evidence
 from stiction.diagnosis.screening.model import Model, fit_model
-from stiction.fitting.pulls import pulls_of_readings, widened
+from stiction.fitting.pulls import pulls_of_readings, widen
 from stiction.fitting.result import FitParameter
 
 DT, SAMPLES = 1e-3, 12_000
@@ -67,7 +67,7 @@ def test_intervals_reach_what_readings_pull_away_from(
     error = plain[INERTIA].value - inertia
     assert 0.5 < pulls[INERTIA] / error < 2.0
     assert plain[INERTIA].ci95[1] < inertia
-    low, high = widened(plain, pulls)[INERTIA].ci95
+    low, high = widen(plain, pulls)[INERTIA].ci95
     assert low <= inertia <= high
 
 
@@ -98,7 +98,7 @@ def test_nothing_is_told_where_no_recording_can_be_made() -> None:
 def test_an_interval_grows_to_one_side_and_an_open_one_stays_open() -> None:
     known = FitParameter(1.0, 0.1, (0.8, 1.2), "1", "", 1.0)
     open_ = FitParameter(1.0, math.inf, (-math.inf, math.inf), "1", "", 1.0)
-    found = widened({"a": known, "b": open_, "c": known}, {"a": -0.5, "b": 0.5, "d": 1.0})
+    found = widen({"a": known, "b": open_, "c": known}, {"a": -0.5, "b": 0.5, "d": 1.0})
     assert found["a"].ci95 == (0.8, 1.7)
     assert found["b"].ci95 == (-math.inf, math.inf)
     assert found["c"] is known

@@ -75,7 +75,7 @@ class Angular:
         common = np.concatenate([block[:shared] for _, block in blocks], axis=1).T
         return cls(common, np.arange(shared), tuple(own), size)
 
-    def with_shared(self, shared: FloatArray) -> Angular:
+    def with_common(self, shared: FloatArray) -> Angular:
         """With other values of the shared columns, shape (n, s)."""
         return replace(self, shared=shared)
 
@@ -83,9 +83,9 @@ class Angular:
         """With other values of one of the shared columns, shape (n,)."""
         shared = self.shared.copy()
         shared[:, np.flatnonzero(self.places == place)[0]] = values
-        return self.with_shared(shared)
+        return self.with_common(shared)
 
-    def scaled(self, chosen: np.ndarray, factor: FloatArray) -> Angular:
+    def scale(self, chosen: np.ndarray, factor: FloatArray) -> Angular:
         """Some columns, places of shape (k,), each times its factor, shape (size,)."""
         place = np.full(self.size, -1)
         place[chosen] = np.arange(len(chosen))
@@ -136,7 +136,7 @@ class Angular:
                 found.append(each.values[rows - each.rows.start])
         return places, np.hstack(found)
 
-    def orthogonalised(self, flat: float) -> tuple[Angular, FloatArray]:
+    def orthogonal_basis(self, flat: float) -> tuple[Angular, FloatArray]:
         """Directions that span the columns, each of length 1, and the columns that make them.
 
         Parameters
@@ -181,7 +181,7 @@ class Angular:
         sizes = self.sizes
         live = np.flatnonzero(sizes > 0.0)
         factor = 1.0 / np.where(sizes > 0.0, sizes, 1.0)
-        directions, turn = self.scaled(live, factor).orthogonalised(flat)
+        directions, turn = self.scale(live, factor).orthogonal_basis(flat)
         found = np.zeros(self.size)
         found[live] = factor[live] * (turn @ directions.products(target))
         return found

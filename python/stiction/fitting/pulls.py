@@ -25,7 +25,7 @@ from .result import FitParameter
 from .rows import Rows, timing_is_free
 from .slopes import Block, places_of, slope_block
 
-__all__ = ["pulls_of_readings", "widened"]
+__all__ = ["pulls_of_readings", "widen"]
 
 REPLAYS: Final = 4
 """Recordings of each that are made: the mean of what they show is known to half of its scatter."""
@@ -64,7 +64,7 @@ def pulls_of_readings(solution: Solution, rows: Sequence[Rows]) -> dict[str, flo
     }
 
 
-def widened(
+def widen(
     parameters: Mapping[str, FitParameter], pulls: Mapping[str, float]
 ) -> dict[str, FitParameter]:
     """Intervals that reach to where the numbers would be without the pull of the readings."""

@@ -21,8 +21,8 @@ from .readings import own_motion, position_noise, read_sensor, true_motion
 from .rows import Nuisances, Rows
 
 __all__ = [
+    "NearbyMotion",
     "NoReplayError",
-    "Replay",
     "hangs_on_load",
     "noise_of",
     "reread",
@@ -45,7 +45,7 @@ _Residual = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
-class Replay:
+class NearbyMotion:
     """A motion that a plant makes, near that of a recording, and the residual of its readings."""
 
     rows: Rows
@@ -56,7 +56,7 @@ class Replay:
     load: FloatArray | None = None
 
     @classmethod
-    def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> Replay:
+    def of(cls, rows: Rows, plant: Plant, nuisances: Nuisances) -> NearbyMotion:
         rows = rows.with_leader(nuisances)
         form, start = rows.form, nuisances.start(rows.index)
         if isinstance(form, LoopForm):
@@ -168,7 +168,7 @@ def _shot(form: ShootingForm, plant: Plant, start: Start) -> tuple[FloatArray, _
 
 def noise_of(rows: Rows, plant: Plant, nuisances: Nuisances) -> Noise:
     """Noise of one recording beside a plant that describes it."""
-    return Replay.of(rows, plant, nuisances).noise()
+    return NearbyMotion.of(rows, plant, nuisances).noise()
 
 
 def reread(rows: Rows, plant: Plant, nuisances: Nuisances, seed: Sequence[int]) -> Rows:
@@ -191,7 +191,7 @@ def rereads(
         A rigid contact that no simulation keeps near the measured motion; a plant that hangs on the
         load, in whose place stands what makes it follow.
     """
-    replay = Replay.of(rows, plant, nuisances)
+    replay = NearbyMotion.of(rows, plant, nuisances)
     form, inertia = rows.form, rows.form.own(plant).inertia
     if replay.load is None and not form.prescribed:
         raise NoReplayError

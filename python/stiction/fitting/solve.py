@@ -42,7 +42,7 @@ from .minimise import (
     minimise,
     with_interruption,
 )
-from .pulls import pulls_of_readings, widened
+from .pulls import pulls_of_readings, widen
 from .pushes import Watch, push_checks
 from .recording_starts import fit_starts, fit_turns
 from .result import FitParameter, FitResult
@@ -227,7 +227,7 @@ def _fitted(plant: Plant, recordings: list[Recording], max_evaluations: int) -> 
             names=names,
         )
         pulls = {} if found.interrupted else pulls_of_readings(found, train)
-        return replace(told, parameters=widened(told.parameters, pulls))
+        return replace(told, parameters=widen(told.parameters, pulls))
 
     try:
         return said(solution)
@@ -472,7 +472,7 @@ def _bound_sentences(
 ) -> tuple[str, ...]:
     """What ended at a bound; ``followed``: a contact ends where windows stop following it.
 
-    Only a bound that ``given`` states can be widened.
+    Only a bound that ``given`` states can be widen.
     """
     sentences = []
     for path, p in parameters.items():

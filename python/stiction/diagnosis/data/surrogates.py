@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ...fitting.noise import Noise
-from ...fitting.replay import Replay
+from ...fitting.replay import NearbyMotion
 from ...fitting.rows import Nuisances, Rows
 from ...plant import Plant
 from ...residual.weak_form import WeakForm
@@ -50,11 +50,11 @@ def surrogate_residuals(
         By recording.
     """
 
-    def measured(rows: Rows) -> tuple[Replay, Noise]:
-        replay = Replay.of(rows, plant, nuisances)
+    def measured(rows: Rows) -> tuple[NearbyMotion, Noise]:
+        replay = NearbyMotion.of(rows, plant, nuisances)
         return replay, replay.noise()
 
-    def replayed(found: tuple[Replay, Noise]) -> FloatArray:
+    def replayed(found: tuple[NearbyMotion, Noise]) -> FloatArray:
         replay, noise = found
         return replay.rows.weight * replay.columns(noise, number, seed)
 
@@ -65,7 +65,7 @@ def surrogate_residuals(
     return np.concatenate(evidence.each(replayed, found)), noises
 
 
-def _of_one_sensor(found: Sequence[tuple[Replay, Noise]]) -> list[tuple[Replay, Noise]]:
+def _of_one_sensor(found: Sequence[tuple[NearbyMotion, Noise]]) -> list[tuple[NearbyMotion, Noise]]:
     """The same with one noise of the position for all that one sensor read, the middle one.
 
     Where a machine rests between two counts readings show no noise, and then it moves.
@@ -90,7 +90,7 @@ def reading_power(evidence: Evidence, plant: Plant, nuisances: Nuisances) -> flo
     """
 
     def power(rows: Rows) -> float:
-        replay = Replay.of(rows, plant, nuisances)
+        replay = NearbyMotion.of(rows, plant, nuisances)
         left = [rows.weight * each[rows.mask] for each in replay.alone()]
         return float(np.mean([each @ each for each in left]))
 

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ...fitting.pulls import widened
+from ...fitting.pulls import widen
 from ...fitting.result import FitResult
 from ...plant import Plant
 from ...plant.begins import begins
@@ -114,7 +114,7 @@ def evaluate(
     model: Model, scales: Scales, pulls: Mapping[str, float] = MappingProxyType({})
 ) -> FitResult:
     """What a fit says; intervals reach as far as the readings pull, and further for few periods."""
-    told = widened(model.fit_result.parameters, pulls)
+    told = widen(model.fit_result.parameters, pulls)
     return replace(model.fit_result, parameters=open_orders(told, scales))
 
 

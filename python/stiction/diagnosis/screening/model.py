@@ -210,7 +210,7 @@ class Model:
         scale = columns.sizes
         scale[self._shape_of(candidate)] = 0.0
         live = np.flatnonzero(scale > 0.0)
-        scaled = columns.scaled(live, 1.0 / np.where(scale > 0.0, scale, 1.0))
+        scaled = columns.scale(live, 1.0 / np.where(scale > 0.0, scale, 1.0))
         bread = np.linalg.pinv(scaled.normal(), rcond=FLAT, hermitian=True)
         _, index = np.unique(block[fit], return_inverse=True)
         power: FloatArray = np.bincount(index, residual**2).astype(np.float64)
@@ -400,10 +400,10 @@ def step_beside(model: Model, explained: FloatArray) -> Plant:
     columns = model.columns.of_rows(fit)
     shared = columns.shared.copy()
     shared[:, :number] = variables.chain(shared[:, :number], solution.vector)
-    columns = columns.with_shared(shared)
+    columns = columns.with_common(shared)
     scale = columns.sizes
     scale[scale == 0.0] = 1.0
-    columns = columns.scaled(np.arange(columns.size), 1.0 / scale)
+    columns = columns.scale(np.arange(columns.size), 1.0 / scale)
     normal = columns.normal() + FIRST_DAMPING * np.eye(len(scale))
     moved = np.linalg.solve(normal, columns.products(explained[fit])) / scale
     way = np.where(

@@ -52,9 +52,9 @@ class Base:
         size = self._columns.of_rows(plan.fit).sizes
         self._live = np.flatnonzero(size > 0.0)
         self._factor = 1.0 / np.where(size > 0.0, size, 1.0)
-        scaled = self._columns.scaled(self._live, self._factor)
+        scaled = self._columns.scale(self._live, self._factor)
         whole = plan.fit if plan.whole is None else plan.whole
-        self._left, self._inverse = scaled.of_rows(whole).orthogonalised(FLAT)
+        self._left, self._inverse = scaled.of_rows(whole).orthogonal_basis(FLAT)
         self._turn: FloatArray | None = None
         if plan.whole is not None:
             self._left = self._left.of_rows(plan.fit[plan.whole])
