@@ -32,6 +32,7 @@ from stiction.diagnosis.selection.choose import Choice
 from stiction.diagnosis.selection.decide import Trial
 from stiction.diagnosis.selection.restarts import from_the_first
 from stiction.diagnosis.selection.search import Search
+from stiction.fitting.angular import Angular
 
 BLOCKS = np.ones(30), np.ones(30)
 # Hooks of what is late and of what swings.
@@ -384,7 +385,7 @@ def test_what_finds_a_lost_machine_again_is_no_cause(explained: float, refused: 
         power=100.0 * (1.0 - explained),
         relative_input_power=1.0,
         blocks=((1.0 - explained) * train, left),
-        columns=np.ones((number, 1)),
+        columns=Angular.of_matrix(np.ones((number, 1))),
         residual=np.ones(number),
     )
     own = score("cogging", explained, threshold=0.01)
