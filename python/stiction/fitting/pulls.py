@@ -22,7 +22,7 @@ from .angular import Angular
 from .minimise import Solution
 from .replay import NoReplayError, rereads
 from .result import FitParameter
-from .rows import Rows, timing_is_free
+from .rows import Rows, timing_bound
 from .slopes import Block, places_of, slope_block
 
 __all__ = ["pulls_of_readings", "widen"]
@@ -93,10 +93,14 @@ def _steps(solution: Solution, rows: Sequence[Rows]) -> FloatArray:
 
     shared = len(paths) + 1
     size, steps = shared + len(places_of(nuisances)), []
+    bound = timing_bound(plant, rows)
     for own in zip(*side_by_side(replayed, rows), strict=True):
         columns = Angular.of_blocks([block for block, _ in own], shared, size)
-        if not timing_is_free(solution.nuisances.timing, plant, rows):
-            columns = columns.with_column(shared - 1, 0.0)
-        gains = columns.gains(np.concatenate([left for _, left in own]), FLAT)
+        left = np.concatenate([rows_left for _, rows_left in own])
+        gains = columns.gains(left, FLAT)
+        if abs(gains[shared - 1]) > bound:
+            # The offset of timing is pulled to its bound, and the others go on without it.
+            held = bound * np.sign(gains[shared - 1]) * columns.shared[:, shared - 1]
+            gains = columns.with_column(shared - 1, 0.0).gains(left - held, FLAT)
         steps.append(-gains[: len(paths)])
     return np.array(steps)
