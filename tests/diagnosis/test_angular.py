@@ -7,8 +7,8 @@ import pytest
 
 from stiction.diagnosis.data.evidence import Plan
 from stiction.diagnosis.screening.folds import over_plans
-from stiction.diagnosis.screening.regression import FLAT, project
-from stiction.fitting.angular import Angular
+from stiction.diagnosis.screening.regression import project
+from stiction.fitting.angular import FLAT, Angular
 
 RECORDINGS, EACH, SHARED = 6, 80, 4
 ROWS = RECORDINGS * EACH
@@ -67,7 +67,7 @@ def test_it_is_the_matrix_written_out() -> None:
 
 def test_directions_span_what_columns_do_and_drop_what_depends() -> None:
     angular, whole = columns()
-    directions, made = angular.orthogonal_basis(FLAT)
+    directions, made = angular.orthogonal_basis()
     found = directions.matrix()
     assert found.T @ found == pytest.approx(np.eye(directions.size), abs=1e-12)
     assert directions.size == angular.size - 1 == np.linalg.matrix_rank(whole)

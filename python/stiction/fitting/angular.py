@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -17,7 +18,10 @@ from .._support.arrays import FloatArray
 from .rows import Mask
 from .slopes import Block
 
-__all__ = ["Angular"]
+__all__ = ["FLAT", "Angular"]
+
+FLAT: Final = 1e-8
+"""Directions below this share of the strongest one are dropped."""
 
 
 @dataclass(frozen=True)
@@ -136,13 +140,8 @@ class Angular:
                 found.append(each.values[rows - each.rows.start])
         return places, np.hstack(found)
 
-    def orthogonal_basis(self, flat: float) -> tuple[Angular, FloatArray]:
+    def orthogonal_basis(self) -> tuple[Angular, FloatArray]:
         """Directions that span the columns, each of length 1, and the columns that make them.
-
-        Parameters
-        ----------
-        flat : float
-            Directions below this share of the strongest one are dropped.
 
         Returns
         -------
@@ -159,11 +158,11 @@ class Angular:
         most = max((float(s[0]) for s in (sizes, *(p[1] for p in parts)) if len(s)), default=0.0)
         own, turns, first = [], [], 0
         for each, (u, s, v) in zip(self.own, parts, strict=True):
-            kept = s > flat * most
+            kept = s > FLAT * most
             own.append(_Own(each.rows, first + np.arange(int(kept.sum())), u[:, kept]))
             turns.append((each.places, v[kept].T / s[kept]))
             first += int(kept.sum())
-        kept = sizes > flat * most
+        kept = sizes > FLAT * most
         count = first + int(kept.sum())
         turn = np.zeros((self.size, count))
         last = np.arange(first, count)
@@ -176,12 +175,12 @@ class Angular:
         found = Angular(left[:, kept], last, tuple(own), count)
         return found, turn
 
-    def gains(self, target: FloatArray, flat: float) -> FloatArray:
+    def gains(self, target: FloatArray) -> FloatArray:
         """Least squares, shape (n,): gains of each column, 0 for one that is 0; shape (size,)."""
         sizes = self.sizes
         live = np.flatnonzero(sizes > 0.0)
         factor = 1.0 / np.where(sizes > 0.0, sizes, 1.0)
-        directions, turn = self.scale(live, factor).orthogonal_basis(flat)
+        directions, turn = self.scale(live, factor).orthogonal_basis()
         found = np.zeros(self.size)
         found[live] = factor[live] * (turn @ directions.products(target))
         return found

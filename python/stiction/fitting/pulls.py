@@ -31,8 +31,6 @@ REPLAYS: Final = 4
 """Recordings of each that are made: the mean of what they show is known to half of its scatter."""
 SEED: Final = 37
 """Of their noise: always the same."""
-FLAT: Final = 1e-8
-"""Directions below this share of the strongest one are left alone."""
 TOLD: Final = 2.0
 """Standard errors of that mean from which on it is told from 0."""
 
@@ -97,10 +95,10 @@ def _steps(solution: Solution, rows: Sequence[Rows]) -> FloatArray:
     for own in zip(*side_by_side(replayed, rows), strict=True):
         columns = Angular.of_blocks([block for block, _ in own], shared, size)
         left = np.concatenate([rows_left for _, rows_left in own])
-        gains = columns.gains(left, FLAT)
+        gains = columns.gains(left)
         if abs(gains[shared - 1]) > bound:
             # The offset of timing is pulled to its bound, and the others go on without it.
             held = bound * np.sign(gains[shared - 1]) * columns.shared[:, shared - 1]
-            gains = columns.with_column(shared - 1, 0.0).gains(left - held, FLAT)
+            gains = columns.with_column(shared - 1, 0.0).gains(left - held)
         steps.append(-gains[: len(paths)])
     return np.array(steps)

@@ -472,7 +472,7 @@ def _bound_sentences(
 ) -> tuple[str, ...]:
     """What ended at a bound; ``followed``: a contact ends where windows stop following it.
 
-    Only a bound that ``given`` states can be widen.
+    Only a bound that ``given`` states can be widened.
     """
     sentences = []
     for path, p in parameters.items():

@@ -40,7 +40,7 @@ def over_plans(columns: Angular, targets: FloatArray, plans: Sequence[Plan]) -> 
         yield Base(columns, plans[0]).project(targets)
         return
     pieces = _pieces(columns, plans)
-    small, turned = _turned(columns, targets, pieces)
+    small, turned = _condensed(columns, targets, pieces)
     first = np.repeat([int(rows[0]) for rows in pieces], [len(part) for part in turned])
     short = np.concatenate(turned)
     for plan in plans:
@@ -66,7 +66,7 @@ def _pieces(columns: Angular, plans: Sequence[Plan]) -> list[np.ndarray]:
     return np.split(order, ends)
 
 
-def _turned(
+def _condensed(
     columns: Angular, targets: FloatArray, pieces: Sequence[np.ndarray]
 ) -> tuple[Angular, list[FloatArray]]:
     """Each piece in as few rows as it has columns: of the base, and of the targets."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ...catalogue import effects
-from ...fitting.angular import Angular
+from ...fitting.angular import FLAT, Angular
 from ...fitting.first_pass import Along
 from ...fitting.leading import refit_windows
 from ...fitting.levenberg import FIRST_DAMPING
@@ -57,8 +57,6 @@ REPLAYS: Final = 8
 """Recordings in which a plant is right, to see what their noise gains."""
 SEED: Final = 31
 """Of that noise: always the same."""
-FLAT: Final = 1e-8
-"""Directions of the base with less than this share of the strongest one are left alone."""
 MOST_TAKEN: Final = 0.5
 """Effects that leave less than this share of the power that a drive gives are judged by what they
 leave: what shrinks measured and needed effort alike explains nothing."""

@@ -12,10 +12,8 @@ from ...fitting.angular import Angular
 from ...fitting.rows import Mask
 from ..data.evidence import Plan
 
-__all__ = ["FLAT", "Base", "Projected", "bounded_gains", "project", "refit_residuals"]
+__all__ = ["Base", "Projected", "bounded_gains", "project", "refit_residuals"]
 
-FLAT: Final = 1e-8
-"""Directions of the base with less than this share of the strongest one are dropped."""
 LEAST_TOLD: Final = 0.05
 """A direction of which a fold tells less than this share of what all fitted rows tell is left where
 those put it: what one block alone determines, the others cannot."""
@@ -54,7 +52,7 @@ class Base:
         self._factor = 1.0 / np.where(size > 0.0, size, 1.0)
         scaled = self._columns.scale(self._live, self._factor)
         whole = plan.fit if plan.whole is None else plan.whole
-        self._left, self._inverse = scaled.of_rows(whole).orthogonal_basis(FLAT)
+        self._left, self._inverse = scaled.of_rows(whole).orthogonal_basis()
         self._turn: FloatArray | None = None
         if plan.whole is not None:
             self._left = self._left.of_rows(plan.fit[plan.whole])

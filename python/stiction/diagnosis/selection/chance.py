@@ -17,10 +17,10 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ...catalogue import effects
+from ...fitting.angular import FLAT
 from ..screening.block_gains import paired_z
 from ..screening.candidates import LOWEST, scales_of
 from ..screening.model import Model
-from ..screening.regression import FLAT
 from .decide import Trial
 
 __all__ = ["TOO_NEAR", "by_chance", "lacks_repeats", "odds", "share_of_phases", "share_of_waves"]
