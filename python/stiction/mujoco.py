@@ -397,7 +397,10 @@ def _check_motion(joint: str, plant: Plant, hinge: bool) -> None:
 def _sentences(plant: Plant, kept: Sequence[Effect]) -> list[str]:
     """What of a plant its joint in a robot does not have."""
     lost = [
-        f"{effect.name}: {effect.record.summary}" for effect in plant.effects if effect not in kept
+        f"{effect.name}: {effect.record.summary}"
+        + (": actuators of the model have their own" if effect.record.before_drive else "")
+        for effect in plant.effects
+        if effect not in kept
     ]
     if plant.hangs:
         lost.append("gravity of the plant: bodies of the model have their own")

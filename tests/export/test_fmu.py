@@ -289,10 +289,11 @@ def test_a_step_that_is_no_step_is_a_sentence(fmpy, tmp_path, capfd):
 
 def test_sources_compile_without_a_warning(tmp_path):
     compiler = shutil.which("cc") or pytest.skip("no C compiler is installed")
-    for law in ("coulomb", "lugre", "gms"):
+    for law in names_of("laws"):
         inside(machine({"law": law}).export("fmu")).extractall(tmp_path)
         source = str(tmp_path / "sources" / "plant.c")
-        flags = ("-std=c99", "-fsyntax-only", *WARNINGS)
+        # Checked syntax alone tells of no function that nobody calls.
+        flags = ("-std=c99", "-c", "-o", str(tmp_path / "plant.o"), *WARNINGS)
         subprocess.run([compiler, *flags, source], check=True)
 
 

@@ -28,10 +28,12 @@ static real gravity(real position)
 #endif
 }
 
+#if SERVO or INPUT_LIMIT < inf
 static real limited(real value, real most)
 {
     return value > most ? most : value < -most ? -most : value;
 }
+#endif
 #if SERVO
 
 static real voltage(const stiction_machine *a, const stiction_state *s, real goal, real velocity)

@@ -118,10 +118,10 @@ static real hardened(const stiction_law *law, real displacement, real span)
 #if RATED
 #include "short_ways.c"
 #endif
+#if SLIPS
 #ifdef MACHINE
 #include "lagging.c"
 #endif
-#if SLIPS
 
 /* Where the virgin curve has a force of this size: Halley's iteration. */
 static real virgin_inverse(real target)
