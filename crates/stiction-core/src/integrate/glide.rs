@@ -123,9 +123,10 @@ impl<S: Scalar> Acting<S> {
 
 /// All effort but friction, sample by sample. A trait, for a closure cannot ask to be part of the loop.
 pub trait Efforts<S: Scalar> {
-    /// Whether they are the same all through a sample and levels are 1: else what acts where the body is
-    /// comes to them.
+    /// Whether they are the same all through a sample: else what acts where the body is comes to them.
     const HELD: bool = true;
+    /// Whether friction has levels beside 1; efforts that are held leave it none.
+    const LEVELS: bool = false;
     /// During this sample, where they are the same all through it.
     fn at(&self, sample: usize) -> S;
     /// Of the drive and the load in a sample where a run is, to which its own ambient comes.
@@ -278,7 +279,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
 
     #[inline(always)]
     fn at_levels((level, viscous_level): (S, S)) -> Channels<S> {
-        if E::HELD {
+        if !E::LEVELS {
             return Channels::default();
         }
         Channels { level, viscous_level, ..Channels::default() }
@@ -328,7 +329,7 @@ impl<S: Scalar, E: Efforts<S>, V> Glide<S, E, V> {
 }
 
 impl<S: Scalar, T, E: Efforts<S>, V: Seen<S, T, E>> PlainSteps<S, T> for Glide<S, E, V> {
-    const HELD: bool = E::HELD;
+    const LEVELS: bool = E::LEVELS;
 
     #[inline(always)]
     fn verlet(&self) -> &Verlet<S> {

@@ -3,7 +3,7 @@
 use stiction_dispatch::{Task, Width};
 
 /// Beyond this the reduction by parts of π/2 loses digits, and the library takes over.
-const WIDEST: f64 = 1e5;
+pub(super) const WIDEST: f64 = 1e5;
 /// Added and taken off again, this rounds to a whole number, which then stands in the last bits.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 /// π/2 in two parts: the first one times a number below 2²⁰ is exact.
@@ -19,6 +19,12 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
         return x.sin_cos();
     }
     within_reach(x)
+}
+
+/// The nearest whole number, of what is below 2⁵¹.
+#[inline(always)]
+pub(super) fn round(x: f64) -> f64 {
+    (x + ROUNDING) - ROUNDING
 }
 
 /// cos(order·x) and sin(order·x) of many x.

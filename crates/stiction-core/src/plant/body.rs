@@ -1,6 +1,7 @@
 //! Body: inertia and the efforts that position alone decides.
 
 use crate::math::scalar::Scalar;
+use crate::math::wave::Harmonic;
 
 /// Inertia and gravity.
 #[derive(Debug, Clone, Copy)]
@@ -33,10 +34,17 @@ impl<S: Scalar> Body<S> {
     pub fn gravity(&self, position: S) -> S {
         let weight = self.level_gravity();
         if self.gravity {
-            weight - self.gravity_amplitude * (position - self.gravity_zero).sin()
+            weight + self.pendulum().at(position - self.gravity_zero)
         } else {
             weight
         }
+    }
+
+    /// Its part that goes by the position, beyond [`Self::gravity_zero`].
+    #[inline(always)]
+    pub(super) fn pendulum(&self) -> Harmonic<S> {
+        let (zero, one) = (S::constant(0.0), S::constant(1.0));
+        Harmonic { cosine: zero, sine: -self.gravity_amplitude, order: one }
     }
 
     /// The same where it is the same everywhere.

@@ -6,6 +6,7 @@ use super::body::Body;
 use super::budget::Budget;
 use super::drive::Drive;
 use super::effects::{Effects, Passage, Relaxation, Situation};
+use super::place::ByPlace;
 use super::run::{Before, Run};
 use super::sensor::Sensor;
 use super::shaft::Shaft;
@@ -104,6 +105,15 @@ impl<S: Scalar> Machine<S> {
     pub fn is_bare(&self) -> bool {
         let alone = self.shaft.is_none() && !self.relaxes() && self.body.is_level();
         alone && self.effects.even_effort().is_some() && self.drive.servo.is_none()
+    }
+
+    /// Its gravity, added efforts, levels and what becomes of its input, where these go by the place alone and
+    /// nothing else is there.
+    pub(crate) fn by_place(&self) -> Option<ByPlace> {
+        let alone = self.shaft.is_none() && self.has_rows() && !self.notes_samples();
+        let drive = !self.drives_by_place() || self.effects.followed_input().is_some();
+        let steady = !self.effects.damps() && self.drive.servo.is_none() && drive;
+        if alone && steady { ByPlace::of(&self.body, &self.effects) } else { None }
     }
 
     /// Whether its steps may go in rows: nothing gives way in series with the contact.

@@ -34,7 +34,7 @@ impl<S: Scalar> Coulomb<S> {
         if let Some(force) = glide.hold(greatest, state) {
             state.0.force = force;
         }
-        let greatest = if G::HELD { greatest } else { greatest * glide.levels().0 };
+        let greatest = if G::LEVELS { greatest * glide.levels().0 } else { greatest };
         glide.next().is_some_and(|effort| !state.0.holds(effort, greatest))
     }
 
@@ -89,8 +89,8 @@ impl<S: Scalar> Coulomb<S> {
         (level, viscous_level): (S, S),
     ) -> (S, S) {
         let p = &self.parameters;
-        let raised = |force: S| if G::HELD { force } else { force * level };
-        let viscous = if G::HELD { p.viscous } else { p.viscous * viscous_level };
+        let raised = |force: S| if G::LEVELS { force * level } else { force };
+        let viscous = if G::LEVELS { p.viscous * viscous_level } else { p.viscous };
         if !self.falls {
             return (raised(p.coulomb) * mode + viscous * velocity, viscous);
         }

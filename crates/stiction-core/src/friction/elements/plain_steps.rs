@@ -8,9 +8,8 @@ use crate::math::verlet::Verlet;
 /// A row of plain steps of a body whose contact has a state `T`: what [`FrictionLaw::glide`] goes
 /// through. Whoever steps the body has it; a law knows no more of that than is said here.
 pub trait PlainSteps<S: Scalar, T> {
-    /// Whether efforts are the same all through a sample and levels are 1: else what acts where the
-    /// body is comes to them.
-    const HELD: bool;
+    /// Whether friction has levels beside 1.
+    const LEVELS: bool;
 
     /// The body's share of a step.
     fn verlet(&self) -> &Verlet<S>;

@@ -121,7 +121,7 @@ impl<S: Scalar> HsiehPan<S> {
             } else {
                 // A copy for the call: what it may look at could not stay in registers.
                 let begun = now.apart();
-                let level = if G::HELD { S::constant(1.0) } else { level };
+                let level = if G::LEVELS { level } else { S::constant(1.0) };
                 let rest = (unbraked, braking, level);
                 let apart = self.step_apart(state, &begun, displacement, verlet.span(), rest);
                 let Some(apart) = apart else { break };
@@ -140,7 +140,7 @@ impl<S: Scalar> HsiehPan<S> {
     /// A force at a level, where there is one.
     #[inline(always)]
     fn raised<G: PlainSteps<S, HsiehPanState<S>>>(force: S, level: S) -> S {
-        if G::HELD { force } else { force * level }
+        if G::LEVELS { force * level } else { force }
     }
 
     /// A step in which creep sets in or ends, or the spring gets through its reverse points or is

@@ -16,14 +16,15 @@ impl<S: Scalar> MaxwellSlip<S> {
         let (curve, damping) = (&self.curve, self.parameters.viscous);
         let looks = glide.looks();
         let plainly = glide.verlet().dragged(damping);
-        let share = plainly.share(damping);
-        let braking = plainly.braking(share);
+        let mut share = plainly.share(damping);
+        let mut braking = plainly.braking(share);
+        let mut shared = damping;
         let mut course = curve.course(&state.spring);
         let (mut here, mut velocity) = (state.spring.here(), glide.velocity());
         while let Some(effort) = glide.next() {
             let mut verlet = plainly;
             let (mut push, mut dragging) = (effort - here.force, damping);
-            if !G::HELD {
+            if G::LEVELS {
                 push = effort - here.force * glide.levels().0;
                 dragging = damping * glide.levels().1;
                 verlet = glide.verlet().dragged(dragging);
@@ -31,11 +32,15 @@ impl<S: Scalar> MaxwellSlip<S> {
             let displacement = verlet.displacement(velocity, push);
             let predicted = || verlet.predicted(velocity, push - dragging * velocity);
             let effort_then = glide.there(effort, displacement, predicted);
-            let (mut share, mut braking, mut dragged_then) = (share, braking, damping);
-            if !G::HELD {
+            let mut dragged_then = damping;
+            if G::LEVELS {
                 dragged_then = damping * glide.levels_there().1;
-                share = verlet.share(dragged_then);
-                braking = verlet.braking(share);
+                // Mostly the same as before: then no step waits for a division.
+                if S::CARRIES || dragged_then.re() != shared.re() {
+                    share = verlet.share(dragged_then);
+                    braking = verlet.braking(share);
+                    shared = dragged_then;
+                }
             }
             let unbraked = verlet.unbraked(velocity, push + effort_then, share);
             if let Some(there) = curve.along::<EXPONENTIAL>(&course, &here, displacement) {
@@ -46,7 +51,7 @@ impl<S: Scalar> MaxwellSlip<S> {
                 course = turned;
                 here = state.spring.here();
             }
-            let undamped = if G::HELD { here.force } else { here.force * glide.levels_there().0 };
+            let undamped = if G::LEVELS { here.force * glide.levels_there().0 } else { here.force };
             let arrived = unbraked - braking * undamped;
             if looks {
                 state.spring.slide(&here.apart());

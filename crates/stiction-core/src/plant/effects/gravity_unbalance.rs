@@ -23,12 +23,7 @@ parameters! {
 /// Neutral: a = b = 0.
 /// Source: the pendulum; ISO 21940-11:2016 on what balancing leaves of it.
 #[derive(Debug, Clone)]
-pub struct GravityUnbalance<S> {
-    amplitudes: GravityUnbalanceParameters<S>,
-    /// Waves a turn: 1. Read with the amplitudes, for a sine that hangs on nothing of an effect is
-    /// computed wherever effects are gone through, before it is known which there are.
-    order: f64,
-}
+pub struct GravityUnbalance<S>(Wave<S>);
 
 impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
     const PARAMETERS: &'static [ParameterSpec] = GravityUnbalanceParameters::<f64>::SPECS;
@@ -53,21 +48,21 @@ impl<S: Scalar> Effect<S> for GravityUnbalance<S> {
     };
 
     fn build(values: &[S]) -> Self {
-        Self { amplitudes: GravityUnbalanceParameters::from_values(values), order: 1.0 }
+        let GravityUnbalanceParameters { cosine, sine } =
+            GravityUnbalanceParameters::from_values(values);
+        Self(Wave::new([cosine, sine, S::constant(1.0)], [S::constant(0.0); 3]))
     }
 
     #[inline(always)]
     fn effort(&self, at: &Situation<S>, _memory: &Memory<S>) -> S {
-        let (sine, cosine) = (at.position * self.order).sin_cos();
-        self.amplitudes.cosine * cosine + self.amplitudes.sine * sine
+        self.0.at(at.position)
     }
 
     fn effort_wave(&self) -> Option<Wave<S>> {
-        let (zero, order) = (S::constant(0.0), S::constant(self.order));
-        Some(Wave::new([self.amplitudes.cosine, self.amplitudes.sine, order], [zero; 3]))
+        Some(self.0)
     }
 
     fn stiffness(&self, _sliding: f64) -> f64 {
-        self.amplitudes.cosine.re().hypot(self.amplitudes.sine.re())
+        self.0.steepest()
     }
 }

@@ -7,6 +7,7 @@ use elements::facts;
 use elements::situation;
 
 pub use elements::sorted::Effects;
+pub(crate) use elements::sorted::never_driving;
 pub use elements::spec::EffectSpec;
 pub use facts::{EffectFacts, Hook, Scale, Shape};
 pub use situation::{
@@ -75,6 +76,10 @@ pub trait Effect<S: Scalar>: Clone + std::fmt::Debug + Send + Sync {
     #[inline(always)]
     fn input(&self, input: S, _at: &Situation<S>) -> S {
         input
+    }
+    /// The share of the input that is added to it, where that is a wave over position.
+    fn input_wave(&self) -> Option<Wave<S>> {
+        None
     }
     /// How late the input arrives, in s. A delay that is there is followed even where it is 0, so
     /// that derivatives see it.

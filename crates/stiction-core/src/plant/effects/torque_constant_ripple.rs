@@ -63,4 +63,8 @@ impl<S: Scalar> Effect<S> for TorqueConstantRipple<S> {
     fn input(&self, input: S, at: &Situation<S>) -> S {
         input + input * self.0.at(at.position)
     }
+
+    fn input_wave(&self) -> Option<Wave<S>> {
+        Some(self.0)
+    }
 }

@@ -5,7 +5,7 @@ use crate::integrate::{Acting, Efforts, Stillness};
 use crate::math::scalar::Scalar;
 use crate::plant::drive::{Way, arriving};
 use crate::plant::effects::{Effects, Situation};
-use crate::plant::{Before, Machine, Run};
+use crate::plant::{Before, ByPlace, Machine, Run};
 use crate::simulate::model::CHUNK;
 use crate::support::samples::{PerSample, Surroundings};
 
@@ -62,8 +62,9 @@ impl<'a, S: Scalar> Notes<'a, S> {
     }
 }
 
-/// All effort but friction on a bare machine; on another, that of the drive and the load.
-pub(super) struct Applied<'a, 'b, S: Scalar, A, const BARE: bool> {
+/// All effort but friction on a bare machine; on another, that of the drive and the load. One without
+/// levels has nothing else but efforts that go by the place.
+pub(super) struct Applied<'a, 'b, S: Scalar, A, const BARE: bool, const LEVELS: bool> {
     pub(super) machine: &'a mut Machine<S>,
     pub(super) inputs: &'a [f64],
     pub(super) around: Surroundings<'a>,
@@ -71,10 +72,12 @@ pub(super) struct Applied<'a, 'b, S: Scalar, A, const BARE: bool> {
     pub(super) ahead: &'a mut Ahead,
     /// What is noted of the samples, where anything is.
     pub(super) notes: &'a mut Notes<'b, S>,
+    /// What goes by the place, where nothing else acts on a machine that is not bare.
+    pub(super) by_place: &'a mut Option<ByPlace>,
     /// Whether inputs are data and nothing takes note of samples or swings.
     pub(super) plainly: bool,
     /// Whether the drive goes by place and speed.
-    pub(super) by_place: bool,
+    pub(super) drives_by_place: bool,
     /// Whether a second mass swings.
     pub(super) swings: bool,
     /// Duration of a sample, and of a step.
@@ -87,7 +90,9 @@ pub(super) struct Applied<'a, 'b, S: Scalar, A, const BARE: bool> {
     pub(super) rough: f64,
 }
 
-impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE> {
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool, const LEVELS: bool>
+    Applied<'_, '_, S, A, BARE, LEVELS>
+{
     #[inline(always)]
     fn load(&self, sample: usize) -> S {
         (self.added)(sample) + self.around.load.at(sample)
@@ -116,7 +121,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE>
         let Some(way) = &mut notes.way else { return };
         let input = way.pass(self.inputs[sample], None, self.dt);
         notes.arrived = Some(input);
-        if self.by_place {
+        if self.drives_by_place {
             return;
         }
         let load = self.load(sample);
@@ -142,6 +147,18 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE>
         }
     }
 
+    /// Effort of the drive and the load at a place, where nothing goes by anything else.
+    #[inline(always)]
+    fn driving_by_place(&self, sample: usize, place: f64) -> S {
+        match &*self.by_place {
+            Some(by_place) if LEVELS && by_place.ripples() => {
+                let input = by_place.input(self.inputs[sample], place);
+                self.machine.drive.direct(input) + self.load(sample)
+            }
+            _ => self.at(sample),
+        }
+    }
+
     /// Effort of a drive that goes by place and speed, and the load.
     #[inline(always)]
     fn driving_at(&self, sample: usize, at: &Situation<S>) -> S {
@@ -150,20 +167,27 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Applied<'_, '_, S, A, BARE>
     }
 }
 
-impl<S: Scalar, A, const BARE: bool> OfMachine<S> for Applied<'_, '_, S, A, BARE> {
+impl<S: Scalar, A, const BARE: bool, const LEVELS: bool> OfMachine<S>
+    for Applied<'_, '_, S, A, BARE, LEVELS>
+{
     #[inline(always)]
     fn machine(&self) -> &Machine<S> {
         self.machine
     }
 }
 
-impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, '_, S, A, BARE> {
+impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool, const LEVELS: bool> Efforts<S>
+    for Applied<'_, '_, S, A, BARE, LEVELS>
+{
     const HELD: bool = BARE;
+    const LEVELS: bool = LEVELS;
 
     #[inline(always)]
     fn driving(&self, sample: usize, run: &Run<S>) -> S {
-        if self.plainly || !self.by_place {
+        if !LEVELS || self.plainly || !self.drives_by_place {
             self.at(sample)
+        } else if !S::CARRIES && self.by_place.is_some() {
+            self.driving_by_place(sample, run.position.re())
         } else {
             self.driving_at(sample, &run.situation())
         }
@@ -178,6 +202,20 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         span: S,
         there: &mut Acting<S>,
     ) {
+        if !S::CARRIES && self.by_place.is_some() {
+            let place = (run.position + displacement).re();
+            if let Some(by_place) = self.by_place {
+                by_place.go_on(place);
+            }
+            there.driving = self.driving_by_place(sample, place);
+            if let Some(by_place) = self.by_place {
+                there.ambient = S::constant(by_place.effort(place));
+                if LEVELS {
+                    there.levels.0 = S::constant(by_place.level(place));
+                }
+            }
+            return;
+        }
         let mut at = run.situation().after(displacement, velocity, span);
         if self.plainly {
             let driving = |_: &Situation<S>| self.at(sample);
@@ -186,7 +224,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         }
         let pull = if self.swings { Some(self.swing(run, &at, span)) } else { None };
         let driving = |at: &Situation<S>| {
-            if self.by_place { self.driving_at(sample, at) } else { self.at(sample) }
+            if self.drives_by_place { self.driving_at(sample, at) } else { self.at(sample) }
         };
         self.machine.acting(&mut at, driving, || self.load(sample), pull, there);
     }
@@ -199,7 +237,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         arrived: Option<&Acting<S>>,
         levels: &mut (S, S),
     ) {
-        if !BARE {
+        if LEVELS {
             let acting = || (self.driving(sample, run), self.load(sample));
             self.machine.levels_of(run, acting, arrived, levels);
         }
@@ -207,11 +245,14 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn settle(&mut self, sample: usize, run: &mut Run<S>, from: (S, S), mut efforts: (S, S)) {
+        if !LEVELS {
+            return;
+        }
         if !self.plainly && self.swings {
             (run.second_position, run.second_velocity) = self.notes.second;
         }
         if self.counts {
-            if !self.plainly && self.by_place {
+            if !self.plainly && self.drives_by_place {
                 // At the speed that it has got, not at the one that the step was shown.
                 efforts.1 = self.driving(sample, run) + run.ambient;
             }
@@ -221,7 +262,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn is_fine(&self, speed: f64, effort: f64, levels: (S, S)) -> bool {
-        self.machine.is_fine(speed, effort, levels, self.span.re())
+        !LEVELS || self.machine.is_fine(speed, effort, levels, self.span.re())
     }
 
     fn stillness(&self, run: &Run<S>, greatest: f64, levels: (S, S)) -> Stillness {
@@ -233,7 +274,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn held(&mut self, run: &mut Run<S>, span: S) {
-        if !self.plainly && (self.swings || self.notes.takes) {
+        if LEVELS && !self.plainly && (self.swings || self.notes.takes) {
             let at = run.situation();
             self.machine.swing(&at, &at, span, run);
             self.machine.refresh(run);
@@ -242,7 +283,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
 
     #[inline(always)]
     fn ended(&mut self, sample: usize, run: &mut Run<S>) {
-        if !BARE && !self.plainly && self.notes.any {
+        if LEVELS && !self.plainly && self.notes.any {
             self.note(sample, run);
         }
     }
@@ -252,7 +293,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool> Efforts<S> for Applied<'_, 
         if !S::CARRIES {
             return S::constant(self.ahead.at(sample));
         }
-        if !BARE && let Some(held) = self.notes.held {
+        if LEVELS && let Some(held) = self.notes.held {
             return held;
         }
         let load = self.load(sample);

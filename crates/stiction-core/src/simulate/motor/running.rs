@@ -9,7 +9,7 @@ use crate::integrate::{
 };
 use crate::math::scalar::Scalar;
 use crate::plant::drive::{Way, arriving};
-use crate::plant::{Before, Machine, Run};
+use crate::plant::{Before, ByPlace, Machine, Run};
 use crate::simulate::model::CHUNK;
 use crate::simulate::range::{Range, ordinary_motor};
 use crate::support::error::{Error, Result};
@@ -243,10 +243,17 @@ impl<S: Scalar> Running<S> {
         whole_parts(self.parts(longest), self.most_parts, longest)?;
         let mut meter = Meter::new(self.allowance.unwrap_or_else(|| work::allowed(inputs.len())));
         meter.foresee(self.foreseen(&around, dt, inputs.len()))?;
+        let by_place = if S::CARRIES { None } else { self.by_place(&around) };
+        let level = by_place.is_some_and(|it| it.is_level());
         let done = if self.goes_bare(&around) {
-            self.simulate_kind::<true>(inputs, around, added, dt, rows, &mut meter)
+            self.simulate_kind::<true, false>(inputs, around, added, dt, rows, None, &mut meter)
+        } else if !S::CARRIES && level {
+            // Not with derivatives, where a third kind would be as much code again.
+            self.simulate_kind::<false, false>(
+                inputs, around, added, dt, rows, by_place, &mut meter,
+            )
         } else {
-            self.simulate_kind::<false>(inputs, around, added, dt, rows, &mut meter)
+            self.simulate_kind::<false, true>(inputs, around, added, dt, rows, by_place, &mut meter)
         };
         self.allowance = self.allowance.map(|_| meter.left());
         done
@@ -278,6 +285,11 @@ impl<S: Scalar> Running<S> {
         self.machine.is_bare() && around.is_steady() && ahead
     }
 
+    /// What goes by the place, where that is all there is beside a bare machine.
+    fn by_place(&self, around: &Surroundings<'_>) -> Option<ByPlace> {
+        if around.is_steady() && self.way.is_none() { self.machine.by_place() } else { None }
+    }
+
     /// Whether plain steps of this motor go in rows.
     fn has_rows(&self) -> bool {
         self.machine.has_rows() && self.integrator == Integrator::Fast
@@ -291,22 +303,24 @@ impl<S: Scalar> Running<S> {
         self.machine.effects.cost_in_a_row() + u64::from(self.machine.drive.servo.is_some())
     }
 
-    fn simulate_kind<const BARE: bool>(
+    #[expect(clippy::too_many_arguments, reason = "one loop, which has all of them")]
+    fn simulate_kind<const BARE: bool, const LEVELS: bool>(
         &mut self,
         inputs: &[f64],
         around: Surroundings<'_>,
         added: impl Fn(usize) -> S,
         dt: PerSample<'_>,
         mut rows: impl Rows<S>,
+        mut by_place: Option<ByPlace>,
         meter: &mut Meter,
     ) -> Result<()> {
         let plain = self.has_rows();
-        let strains = !BARE && self.machine.effects.strains();
+        let strains = LEVELS && self.machine.effects.strains();
         // What is said of the drive without asking where the body is holds while it is on.
-        let by_place = !BARE && (self.machine.drives_by_place() || !around.is_steady());
-        let swings = !BARE && self.machine.shaft.is_some();
+        let drives_by_place = LEVELS && (self.machine.drives_by_place() || !around.is_steady());
+        let swings = LEVELS && self.machine.shaft.is_some();
         // How finely a sample goes hangs on its input before anything holds that up.
-        let alone = !BARE && (!around.is_steady() || (strains && self.way.is_some()));
+        let alone = LEVELS && (!around.is_steady() || (strains && self.way.is_some()));
         let beside = self.cost_in_a_row(&around);
         let mut way = self.way.as_mut();
         let mut early = if BARE { way.take() } else { None };
@@ -356,7 +370,7 @@ impl<S: Scalar> Running<S> {
                         (steps.span, divided)
                     };
                     let machine = &mut self.machine;
-                    let asked = S::CARRIES || by_place || notes.holds_up();
+                    let asked = S::CARRIES || drives_by_place || notes.holds_up();
                     if changed {
                         let effort = |k: usize, input: f64| {
                             machine.bare_effort(input, added(k) + around.load.at(k)).re()
@@ -381,21 +395,22 @@ impl<S: Scalar> Running<S> {
                     let end = end.min(index + 1 + most / parts as usize);
                     notes.begin(&self.run);
                     let verlet = machine.verlet(span);
-                    let (counts, rough) = if BARE {
+                    let (counts, rough) = if !LEVELS {
                         (false, 0.0)
                     } else {
                         let rough = machine.roughness(law.greatest_stiffness(), span.re());
                         (machine.counts_work(), rough)
                     };
-                    let mut efforts = Applied::<_, _, BARE> {
+                    let mut efforts = Applied::<_, _, BARE, LEVELS> {
                         machine,
                         inputs,
                         around,
                         added: &added,
                         ahead: &mut ahead,
                         notes: &mut notes,
-                        plainly: !by_place && !swings && !notes_any,
-                        by_place,
+                        by_place: &mut by_place,
+                        plainly: !drives_by_place && !swings && !notes_any,
+                        drives_by_place,
                         swings,
                         dt: dt_now,
                         span,
@@ -403,7 +418,7 @@ impl<S: Scalar> Running<S> {
                         counts,
                         rough,
                     };
-                    if !BARE {
+                    if LEVELS {
                         efforts.begin(index);
                     }
                     let begun = index;
@@ -414,7 +429,7 @@ impl<S: Scalar> Running<S> {
                         let mut glide = Glide::new(self.run, efforts, seen, samples, step);
                         S::run(Plain { law, state, glide: &mut glide });
                         (glide.run, glide.samples.start, glide.part)
-                    } else if BARE && let Some(places) = rows.places(samples.clone()) {
+                    } else if !LEVELS && let Some(places) = rows.places(samples.clone()) {
                         let glide = Glide::new(self.run, efforts, places, samples, step);
                         S::run(Plain { law, state, glide })
                     } else {

@@ -9,6 +9,7 @@ use crate::friction::{Entry, EntryReader};
 use crate::math::scalar::Scalar;
 use crate::math::wave::Wave;
 use crate::plant::effects::{AnyEffect, Effect, Hook};
+use crate::plant::place::Followed;
 use crate::support::error::{Error, Result};
 
 /// An effect with what it remembers.
@@ -25,6 +26,16 @@ enum Term<S: Scalar> {
     Wave(Wave<S>),
     /// Of the effect at this index.
     Other(usize),
+}
+
+impl<S: Scalar> Term<S> {
+    fn followed(&self) -> Option<Followed> {
+        match self {
+            Self::Even(value) => Some(Followed::Even(value.re())),
+            Self::Wave(wave) => Some(Followed::wave(wave)),
+            Self::Other(_) => None,
+        }
+    }
 }
 
 /// The effects of a plant, sorted once by where they enter.
@@ -277,6 +288,23 @@ impl<S: Scalar> Effects<S> {
         sum
     }
 
+    /// The added efforts in the order of their sum; None for one that goes by more than the place.
+    pub(crate) fn followed_efforts(&self) -> impl Iterator<Item = Option<Followed>> {
+        self.efforts.iter().map(Term::followed)
+    }
+
+    /// The share that the one effect on the input adds to it, where that is a wave.
+    pub(crate) fn followed_input(&self) -> Option<Followed> {
+        let [place] = self.inputs[..] else { return None };
+        let wave = with_effect!(&self.kept[place].effect, |e| e.input_wave());
+        wave.as_ref().map(Followed::wave)
+    }
+
+    /// What is added to the friction level, likewise.
+    pub(crate) fn followed_levels(&self) -> impl Iterator<Item = Option<Followed>> {
+        self.levels.iter().map(Term::followed)
+    }
+
     /// Sum of the added efforts, where it is the same everywhere and always and nothing else is changed but
     /// what the sensor reads and the input, which neither place nor speed change.
     #[inline(always)]
@@ -470,7 +498,7 @@ impl<S: Scalar> Task for Remembering<'_, S> {
 
 /// A level at which friction resists, or 0: below it would drive. There nothing depends on it any more.
 #[inline(always)]
-fn never_driving<S: Scalar>(level: S) -> S {
+pub(crate) fn never_driving<S: Scalar>(level: S) -> S {
     if level.re() < 0.0 { S::constant(0.0) } else { level }
 }
 
