@@ -97,14 +97,14 @@ impl ByPlace {
         Some(Self { weight: body.level_gravity().re(), pendulum, efforts, levels, ripple })
     }
 
-    /// Whether there is no level but 1, and the drive is the same everywhere.
-    pub fn is_level(&self) -> bool {
+    /// Whether there are efforts alone: no level but 1, and a drive that is the same everywhere.
+    pub fn is_effort_alone(&self) -> bool {
         self.levels.number == 0 && self.ripple.is_none()
     }
 
     /// Whether the drive goes by the place.
     #[inline(always)]
-    pub fn ripples(&self) -> bool {
+    pub fn has_ripple(&self) -> bool {
         self.ripple.is_some()
     }
 
@@ -117,9 +117,9 @@ impl ByPlace {
         }
     }
 
-    /// Goes on to where the input will be asked for.
+    /// Follows to where the input will be asked for.
     #[inline(always)]
-    pub fn go_on(&mut self, position: f64) {
+    pub fn follow_ripple(&mut self, position: f64) {
         if let Some(ripple) = &mut self.ripple {
             ripple.at(position);
         }

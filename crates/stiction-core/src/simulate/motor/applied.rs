@@ -151,7 +151,7 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool, const LEVELS: bool>
     #[inline(always)]
     fn driving_by_place(&self, sample: usize, place: f64) -> S {
         match &*self.by_place {
-            Some(by_place) if LEVELS && by_place.ripples() => {
+            Some(by_place) if LEVELS && by_place.has_ripple() => {
                 let input = by_place.input(self.inputs[sample], place);
                 self.machine.drive.direct(input) + self.load(sample)
             }
@@ -202,18 +202,16 @@ impl<S: Scalar, A: Fn(usize) -> S, const BARE: bool, const LEVELS: bool> Efforts
         span: S,
         there: &mut Acting<S>,
     ) {
-        if !S::CARRIES && self.by_place.is_some() {
+        if !S::CARRIES
+            && let Some(by_place) = self.by_place
+        {
             let place = (run.position + displacement).re();
-            if let Some(by_place) = self.by_place {
-                by_place.go_on(place);
+            there.ambient = S::constant(by_place.effort(place));
+            if LEVELS {
+                by_place.follow_ripple(place);
+                there.levels.0 = S::constant(by_place.level(place));
             }
             there.driving = self.driving_by_place(sample, place);
-            if let Some(by_place) = self.by_place {
-                there.ambient = S::constant(by_place.effort(place));
-                if LEVELS {
-                    there.levels.0 = S::constant(by_place.level(place));
-                }
-            }
             return;
         }
         let mut at = run.situation().after(displacement, velocity, span);

@@ -244,10 +244,10 @@ impl<S: Scalar> Running<S> {
         let mut meter = Meter::new(self.allowance.unwrap_or_else(|| work::allowed(inputs.len())));
         meter.foresee(self.foreseen(&around, dt, inputs.len()))?;
         let by_place = if S::CARRIES { None } else { self.by_place(&around) };
-        let level = by_place.is_some_and(|it| it.is_level());
+        let effort_alone = by_place.is_some_and(|it| it.is_effort_alone());
         let done = if self.goes_bare(&around) {
             self.simulate_kind::<true, false>(inputs, around, added, dt, rows, None, &mut meter)
-        } else if !S::CARRIES && level {
+        } else if !S::CARRIES && effort_alone {
             // Not with derivatives, where a third kind would be as much code again.
             self.simulate_kind::<false, false>(
                 inputs, around, added, dt, rows, by_place, &mut meter,
